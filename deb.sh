@@ -15,7 +15,7 @@ say "Building in build/deb"
 cmake --workflow --preset deb
 
 say "Looking at it with lintian"
-# Nobody uploads it to Debian, where a first version closes the request for it.
+# It is not uploaded to Debian, where a first version closes the request for it.
 lintian --allow-root --fail-on error --suppress-tags initial-upload-closes-no-bugs build/touchdown_*.deb
 echo
 echo "Install it, as root: apt install ./$(echo build/touchdown_*.deb)"

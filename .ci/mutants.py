@@ -21,7 +21,7 @@ ROOT = Path(__file__).resolve().parents[1]
 PLACE = ROOT / "build" / "mutants"
 SOURCE, BUILD = PLACE / "src", PLACE / "build"
 ENOUGH = 0.9
-# What must be right, and the tests that are asked.
+# Code that must be right, and its tests.
 FILES = {
     "planning/certify/certificate.cc": "planning_test",
     "planning/certify/curve_check.cc": "planning_test",
@@ -35,8 +35,8 @@ FILES = {
     "control/mission/landing_transitions.cc": "control_test",
     "estimation/pad/pad_filter.cc": "estimation_test",
 }
-# An operator between blanks, as clang-format writes it, and what becomes of it. No numbers: a constant that
-# is tuned may be another one.
+# An operator between blanks, as clang-format writes it, and its replacement. No numbers, because another value of a
+# tuned constant may be right, too.
 SWAPS = [
     (r" < ", " >= "), (r" <= ", " > "), (r" > ", " <= "), (r" >= ", " < "), (r" == ", " != "), (r" != ", " == "),
     (r" \+ ", " - "), (r" - ", " + "), (r" \* ", " / "), (r" / ", " * "), (r" && ", " || "), (r" \|\| ", " && "),
@@ -63,7 +63,7 @@ def mutants_of(name, text):
 
 
 def draw(count, seed, only):
-    """As many of each file as its share of all changes, but two at least."""
+    """From each file as many as its share of all changes, and at least two."""
     chosen, pools = [], {}
     for name in FILES:
         if only in (None, name):
@@ -97,7 +97,7 @@ def build(target):
 
 
 def limit_memory():
-    """A loop that never ends may ask for memory that does not end."""
+    """Limits the memory, because an endless loop may allocate without end."""
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
 
 

@@ -40,7 +40,7 @@ as_root() {
   fi
 }
 
-# Installs what is missing of the given tiers. Without anything missing no network is used.
+# Installs what is missing of the given tiers. If nothing is missing, no network is used.
 install_tiers() {
   local tier missing=()
   for tier in "$@"; do
@@ -53,13 +53,13 @@ install_tiers() {
     apt-get install -q -y --no-install-recommends "${missing[@]}"
 }
 
-# Configures build/release with the given options and builds the given targets (none: all).
-# demo.sh and test.sh share the tree: what one has built the other finds.
+# Configures build/release with the given options and builds the given targets (none: all). demo.sh
+# and test.sh share the tree, so neither builds again what the other has built.
 build_release() {
   local tests=$1
   shift
   say "Building in build/release"
   (cd "$TOUCHDOWN_ROOT" && cmake --preset release -DTOUCHDOWN_BUILD_TESTS="$tests" >/dev/null)
-  # What is compiled for the first time is not preprocessed apart from that.
+  # A first compilation has no separate preprocessing.
   CCACHE_DEPEND=1 cmake --build "$TOUCHDOWN_ROOT/build/release" -j2 ${1:+--target "$@"}
 }

@@ -1,10 +1,10 @@
 # touchdown_add_library(<folder> [WITHOUT <regex>...] PUBLIC ... PRIVATE ...)
 #   One library per top-level folder: target touchdown_<folder>, alias touchdown::<folder>. Its sources are
-#   those in its rooms, which are the folders below it; WITHOUT: but for those whose path there matches.
+#   those in its rooms, the folders below it. WITHOUT leaves out sources whose path there matches.
 # touchdown_add_test(<folder> [SOURCES ...] LINK ... [CLOSED_LOOP <filter>])
-#   One GoogleTest executable per folder, of all sources in its test/ or of those named; every TEST becomes a
-#   CTest entry with the label unit, or closed_loop where the filter takes it: whole flights, which
-#   sanitizers make too slow.
+#   One GoogleTest executable per folder, of all sources in its test/ or of those named. Every TEST becomes a
+#   CTest entry with the label unit, or closed_loop where the filter matches it. Closed loops are whole flights,
+#   which sanitizers make too slow.
 # touchdown_add_bench(<folder> LINK ...)
 #   One Google Benchmark executable per folder, <folder>_bench, of bench/; a test runs each for a moment.
 
@@ -18,11 +18,11 @@ function(touchdown_compile_options target)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
                                            -Woverloaded-virtual -Wold-style-cast
                                            -Wno-missing-field-initializers)
-  # Nobody reads errno after a square root; with it no loop around one is vectorised.
+  # errno is never read after a square root; with it no loop around one is vectorised.
   target_compile_options(${target} PRIVATE -fno-math-errno)
-  # GCC 12 takes the unset operand in its own AVX-512 intrinsics for a fault, once per use (GCC bug
-  # 105593), and with AVX2 or AVX-512 a load of four or eight numbers that is never reached where there
-  # are three for one out of bounds.
+  # GCC 12 has two false warnings. It takes the unset operand in its own AVX-512 intrinsics for a fault, once per use
+  # (GCC bug 105593). With AVX2 or AVX-512 it also reports an access out of bounds: a load of four or eight numbers from
+  # three, which is never reached.
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13
      AND "${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_RELEASE}" MATCHES "-march=")
     target_compile_options(${target} PRIVATE -Wno-uninitialized -Wno-maybe-uninitialized
@@ -37,11 +37,11 @@ function(touchdown_compile_options target)
     target_compile_options(${target} PRIVATE -Werror)
   endif()
   if(TOUCHDOWN_SANITIZE)
-    # With its own checks between them GCC no longer sees that numbers are set before they are read.
+    # With the sanitizer's checks GCC no longer sees that numbers are set before they are read.
     if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
       target_compile_options(${target} PRIVATE -Wno-maybe-uninitialized)
     endif()
-    # What is found fails the test that finds it.
+    # A sanitizer finding fails its test.
     target_compile_options(${target} PUBLIC -fsanitize=${TOUCHDOWN_SANITIZE} -fno-sanitize-recover=all
                                             -fno-omit-frame-pointer)
     target_compile_definitions(${target} PUBLIC TOUCHDOWN_SANITIZED)
@@ -49,8 +49,8 @@ function(touchdown_compile_options target)
   endif()
 endfunction()
 
-# With CMAKE_UNITY_BUILD, which the presets set, the sources of a room are compiled up to twelve at a time: more than half
-# of what each takes alone are the headers that all of them include. So names in anonymous namespaces differ within a room.
+# With CMAKE_UNITY_BUILD, which the presets set, up to twelve sources of a room are compiled together. More than half of
+# the time of each alone is for headers that all of them include. So names in anonymous namespaces differ within a room.
 function(touchdown_compile_by_room target)
   if(NOT CMAKE_UNITY_BUILD)
     return()
@@ -58,7 +58,7 @@ function(touchdown_compile_by_room target)
   set(at_a_time 12)
   set_target_properties(${target} PROPERTIES UNITY_BUILD_MODE GROUP)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-    # Said of what stands in a header, which GCC takes a source that is compiled with others for.
+    # A false warning about headers: GCC takes a source that is compiled with others as a header.
     target_compile_options(${target} PRIVATE -Wno-subobject-linkage)
   endif()
   set(rooms "")  # of each source so far
@@ -108,7 +108,7 @@ function(touchdown_add_test folder)
   if(NOT ARG_SOURCES)
     file(GLOB ARG_SOURCES CONFIGURE_DEPENDS test/*.cc)
   endif()
-  # Whoever counts allocations sees first that they are counted.
+  # A test that counts allocations checks first that the counter works.
   if("touchdown_allocations" IN_LIST ARG_LINK AND NOT folder STREQUAL "solvers")
     list(APPEND ARG_SOURCES "${PROJECT_SOURCE_DIR}/solvers/test/allocation_count_test.cc")
   endif()

@@ -1,5 +1,5 @@
 # The Debian package, by `cpack -G DEB` in any tree with the program and the Python package; ./deb.sh makes the one that is
-# handed on. What Debian's policy alone asks for is in debian/.
+# handed on. Files that only Debian's policy needs are in debian/.
 install(FILES "${PROJECT_SOURCE_DIR}/cmake/debian/copyright" DESTINATION ${CMAKE_INSTALL_DOCDIR}
         COMPONENT debian EXCLUDE_FROM_ALL)
 function(touchdown_install_changelog source name)
@@ -24,7 +24,7 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
-# Who entered the version in Debian's changelog maintains the package.
+# The maintainer is who entered the version in Debian's changelog.
 file(STRINGS "${PROJECT_SOURCE_DIR}/cmake/debian/changelog" signature REGEX "^ -- " LIMIT_COUNT 1)
 string(REGEX REPLACE "^ -- (.*>)  .*$" "\\1" CPACK_DEBIAN_PACKAGE_MAINTAINER "${signature}")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "plans and flies landings of a quadrotor on a moving vehicle")

@@ -1,5 +1,5 @@
 cmake_policy(VERSION 3.25)
-# Run at every build (cmake -P): writes the revision of the sources to HEADER, and touches it only
+# Runs at every build (cmake -P). Writes the revision of the sources to HEADER, and touches it only
 # when it changed.
 #   cmake -DSOURCE_DIR=<repository> -DHEADER=<file> -P TouchdownRevision.cmake
 execute_process(

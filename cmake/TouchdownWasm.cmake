@@ -1,5 +1,5 @@
-# For a browser: Emscripten must not see the system's own headers, so those of the libraries that are headers alone are
-# linked to from a folder of their own.
+# For a browser. Emscripten must not see the system's own headers. So header-only libraries are linked into a folder of
+# their own.
 set(TOUCHDOWN_WASM_HEADERS "${PROJECT_BINARY_DIR}/headers")
 file(MAKE_DIRECTORY "${TOUCHDOWN_WASM_HEADERS}")
 foreach(library boost nlohmann)
@@ -15,8 +15,8 @@ set(Eigen3_DIR "/usr/share/eigen3/cmake" CACHE PATH "")
 add_compile_options(-fwasm-exceptions -msimd128)
 add_link_options(-fwasm-exceptions)
 
-# The linker runs scripts in Node: their modules are where the distribution has them, and some versions have a fetch of
-# their own, which the scripts take for a browser's.
+# The linker runs scripts in Node. Their modules are where the distribution has them. Some versions have a fetch of
+# their own, from which the scripts conclude that they run in a browser.
 set(node_options "")
 execute_process(COMMAND node --no-experimental-fetch -e 0 RESULT_VARIABLE failed OUTPUT_QUIET ERROR_QUIET)
 if(NOT failed)

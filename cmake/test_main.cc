@@ -6,8 +6,8 @@
 
 #include <gmock/gmock.h>
 
-// ctest runs each test in a process of its own, several at once: each gets a temporary folder of
-// its own, so that two tests never write the same file.
+// ctest runs each test in a process of its own, several at once. Each process gets its own
+// temporary folder, so that two tests never write the same file.
 int main(int argc, char** argv) {
   testing::InitGoogleMock(&argc, argv);
   std::string folder = (std::filesystem::temp_directory_path() / "touchdown_test_XXXXXX").string();

@@ -1,7 +1,9 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Executes a notebook from a fresh kernel and writes it with its outputs: as one HTML file, which needs nothing
-beside it and no network, or as Markdown with small pictures beside it, as docs/notebooks has them.
+"""Executes a notebook from a fresh kernel and writes it with its outputs.
+
+The output is one HTML file, which needs no other file and no network, or Markdown with small pictures beside it, as in
+docs/notebooks.
 
     /usr/bin/python3 notebooks/render.py NOTEBOOK.ipynb OUT.html
     /usr/bin/python3 notebooks/render.py NOTEBOOK.ipynb OUT.md
@@ -56,7 +58,7 @@ def to_html(notebook, title):
 
 
 def small(png):
-    """The picture with as many colours as there is room for."""
+    """The picture with as many colours as PICTURE_BYTES allows."""
     picture = Image.open(io.BytesIO(png)).convert("RGB")
     picture.thumbnail((PICTURE_WIDTH, 10 * PICTURE_WIDTH))
     for colours in (128, 64, 32, 16):
@@ -98,7 +100,7 @@ def to_markdown(notebook, name):
 
 
 def sources(page):
-    """A Markdown page without what a run leaves in it."""
+    """A Markdown page without traces of a run."""
     return re.sub(r"\n{2,}", "\n\n", re.sub(_OUTPUTS, "", page))
 
 

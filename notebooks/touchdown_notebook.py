@@ -17,7 +17,8 @@ import pandas as pd
 from IPython.display import Image, Pretty, display
 
 ROOT = Path(__file__).resolve().parent.parent
-# After what is installed: the package touchdown of a build in this clone, and touchdown_report.
+# Searched after the installed packages: the package touchdown of a build in this clone, and
+# touchdown_report.
 sys.path += [str(ROOT / "build" / preset / "python") for preset in ("release", "native")]
 sys.path.append(str(ROOT / "evaluation" / "python"))
 
@@ -123,8 +124,8 @@ def flight(path):
 
 
 def stage_times(profile):
-    """CPU time [ms] of every stage of every replanning step of a profile (`touchdown.read`), the median of its passes:
-    one row a step, with t_now [s], one column a stage, total, and of that what no stage had: other."""
+    """CPU time [ms] of every stage of every replanning step of a profile (`touchdown.read`), the median of its passes.
+    A row is a step, with t_now [s]. The columns are the stages, total, and other: the rest of total."""
     rows = profile["stage"].merge(profile["replan"][["run", "replan", "t_now"]], on=["run", "replan"])
     times = rows.pivot_table("cpu_ms", ["replan", "t_now"], "stage", "median").reset_index("t_now")
     return times.assign(other=times.total - times[STAGES[:-1]].sum(axis=1))
@@ -154,7 +155,7 @@ def show(figure, width=None):
 
 
 def flights_figure(records, zones=()):
-    """Several flights {label: record} of one world from above and in height over time, with circles
+    """Several flights {label: record} of one world from above and in height over time. `zones` are circles
     (x, y, radius) of ground that a flight should keep away from."""
     with plt.rc_context(STYLE):
         figure, (plan, height) = plt.subplots(

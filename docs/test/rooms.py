@@ -14,7 +14,7 @@ FOLDERS = ("solvers", "estimation", "planning", "control", "sim", "evaluation")
 MOST_FILES = 50
 TABLE = ROOT / "docs" / "rooms.md"
 PICTURE = ROOT / "docs" / "architecture.md"
-# What a public header may need of others: nothing but the standard library and Eigen's arrays.
+# The only outside headers of a public header: the standard library and Eigen's arrays.
 PUBLIC_NEEDS = re.compile(r"[a-z_]+|Eigen/\w+|sys/types\.h")
 
 INCLUDE = re.compile(r'^\s*#include ([<"])([^">]+)[">]', re.M)
@@ -47,7 +47,7 @@ def hidden_names(content):
 
 
 def sources(root=ROOT):
-    """Every header and source of a library, but for tests and benchmarks."""
+    """Every header and source of a library, without tests and benchmarks."""
     found = []
     for folder in FOLDERS:
         for path in sorted((root / folder).rglob("*.*")):
@@ -176,7 +176,7 @@ def drawing(files):
 
 
 def _node(room):
-    """A name that is no folder's and no word of Mermaid."""
+    """A name that is neither a folder nor a word of Mermaid."""
     return room.replace("/", "_") + "_"
 
 

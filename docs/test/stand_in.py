@@ -1,10 +1,10 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""What runs in place of the programs that a document calls, found by the name it is called by.
+"""Runs in place of the programs that a document calls; the name of the call selects the program.
 
 The program itself, and programs made from docs/examples, run in a short form: the same sub-command
-and options, with less work. What cannot run inside a test is looked at instead. Exit status: 0, or 2
-with a sentence where the document is wrong."""
+and options, with less work. A command that cannot run inside a test is only checked. Exit status: 0, or 2 with a
+sentence where the document is wrong."""
 import json
 import os
 import re
@@ -74,7 +74,7 @@ def shortened(arguments):
 
 
 def short_record(program, record):
-    """In place of a record, of whose flight a video is made: one of a second."""
+    """Replaces the record for a video by one of a second."""
     if not Path(record).exists():
         raise Wrong(f"there is no record {record}")
     flight = ["land", "open", "--set", "timeout=1", "--record", "short.db"]
@@ -146,7 +146,8 @@ def look_at_apt(arguments):
 
 
 def look_at_docker(arguments):
-    """The image is of the Dockerfile, whose lines `./test.sh bare` executes. What is run in it, the program runs."""
+    """The image is that of the Dockerfile, whose lines `./test.sh bare` executes. The program runs what the document
+    runs in it."""
     if arguments[:1] == ["run"] and "touchdown" in arguments:
         run_program(os.environ["TOUCHDOWN_PROGRAM"], arguments[arguments.index("touchdown") + 1 :])
     elif arguments != ["build", "-t", "touchdown", "."] or not (ROOT / "Dockerfile").exists():

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Every shell block of README.md and docs/ runs, in a folder as ./demo.sh leaves it, with stand-ins
-(stand_in.py) for the programs that it calls; so a new command is covered by being written down."""
+"""Every shell block of README.md and docs/ runs in a folder as ./demo.sh leaves it. Stand-ins (stand_in.py)
+replace the programs that it calls. So a new command is covered as soon as a page has it."""
 import json
 import os
 import re
@@ -28,7 +28,7 @@ trap 'echo "$LINENO: status $? from $BASH_COMMAND" >>"$DOCUMENT_LOG.errors"' ERR
 
 
 def written():
-    """The documents but for the pages of the notebooks, whose commands run where the notebooks do."""
+    """The documents without the pages of the notebooks, whose commands run with the notebooks."""
     return [document for document in documents() if not document.name.startswith("docs/notebooks/")]
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the documents name exists: files, symbols, links, code; and every page can be found."""
+"""Everything that the documents name exists: files, symbols, links, code. Every page can be found."""
 import re
 
 import pytest
@@ -12,7 +12,7 @@ FOLDERS = "touchdown|solvers|estimation|planning|control|sim|evaluation|docs|cma
 
 
 def in_tree(path):
-    """Where a file is that a page names: public headers by the path that they are included by."""
+    """The place of a file that a page names. Public headers are named by their include path."""
     return re.sub(r"^touchdown/(\w+)/", r"\1/include/touchdown/\1/", path)
 
 
@@ -93,7 +93,7 @@ def linked(path):
 
 
 def test_every_page_is_in_the_index():
-    """Those of results in theirs, or in the summary that is listed there."""
+    """Pages of results are listed in their own index, or in the summary that is listed there."""
     index, results = ROOT / "docs" / "README.md", ROOT / "docs" / "results" / "README.md"
     listed = linked(index) | linked(results)
     for summary in results.parent.glob("*.md"):

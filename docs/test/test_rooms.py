@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The includes are what docs/rooms.md says and docs/architecture.md draws, and a breach of the rules is seen."""
+"""The includes agree with docs/rooms.md and docs/architecture.md, and a breach of the rules is found."""
 import pytest
 import rooms
 
@@ -23,7 +23,7 @@ HOUSE = {
 
 
 def said(root, files):
-    """What is wrong with HOUSE, in which `files` are otherwise."""
+    """The breaches in HOUSE with `files` changed."""
     for path, content in {**HOUSE, **files}.items():
         (root / path).parent.mkdir(parents=True, exist_ok=True)
         (root / path).write_text(content)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""How the pages are written: words by page, long sentences, words that readers stumble over.
+"""The style of the pages: words by page, long sentences, and banned words.
 
     python3 docs/test/words.py    prints a table of the pages, and what is wrong
 """
@@ -97,7 +97,7 @@ def page(document):
 
 
 def banned(name, text):
-    """A sentence for each word that is not to be used."""
+    """A sentence for each banned word."""
     return [f"{name}:{text.count(chr(10), 0, found.start()) + 1}: {found[0]}" for found in BANNED.finditer(text)]
 
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// rename(2) replaces a file in one step within a file system, so the working file lies in the same
+// rename(2) replaces a file in one step within a file system. So the working file lies in the same
 // directory, under a name that no other process takes.
 #include "evaluation/base/atomic_file.h"
 

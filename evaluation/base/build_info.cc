@@ -32,7 +32,8 @@ std::string CpuInfo(const std::string& field) {
   return "unknown";
 }
 
-/// That the compiler was allowed to use; preset `native` takes the widest that the CPU has.
+/// The vector instructions that the compiler may use. Preset `native` takes the widest that the CPU
+/// has.
 constexpr const char* kInstructionSet =
 #if defined(__AVX512F__)
     "AVX-512";
@@ -66,8 +67,8 @@ std::string CodeFile() {
   return "/proc/self/exe";
 }
 
-// Of the facts and of the program file. The program file holds the library's own code; the facts stand
-// for what it is linked to and runs on.
+// Of the facts and of the program file. The program file holds the library's own code. The facts describe its linked
+// libraries and its machine.
 std::string Hash(const Pairs& facts) {
   std::ifstream file(CodeFile(), std::ios::binary);
   std::string bytes{std::istreambuf_iterator<char>(file), {}};

@@ -7,9 +7,9 @@
 
 namespace touchdown::evaluation {
 
-/// What a figure was made with: program version, compiler, flags, libraries, CPU,
-/// operating system. Pairs of key and value in a fixed order. `build_hash` is one figure for
-/// everything that bits depend on: only results that agree in it may be merged.
+/// What a figure was made with: program version, compiler, flags, libraries, CPU, operating system.
+/// Pairs of key and value in a fixed order. `build_hash` is a hash of everything that bits depend
+/// on. Only results with the same hash may be merged.
 std::vector<std::pair<std::string, std::string>> BuildManifest();
 
 /// The `build_hash` alone.

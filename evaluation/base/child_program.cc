@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the program says goes to a file in memory: it never waits for a reader, and what it may leave running holds up no reader. It
-// is spawned, not forked: the rasteriser has threads. It stays in this process's group, so that a keyboard's signals end both.
+// The program's output goes to a file in memory. So the program never waits for a reader, and processes that it leaves
+// running hold up no reader. It is spawned, not forked, because the rasteriser has threads. It stays in this process's
+// group, so that a keyboard's signals end both.
 #include "evaluation/base/child_program.h"
 
 #include <algorithm>

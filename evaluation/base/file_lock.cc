@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// flock(2), which is of the open file and not of the process: SQLite's own locks, of the other kind, neither
-// see it nor are lost by it. It is kept open for as long as SQLite has the file, because to close any descriptor of
-// a file drops the process's locks of that other kind.
+// flock(2) belongs to the open file and not to the process. SQLite's own locks are of the other kind; the two do not
+// affect each other. The file is kept open for as long as SQLite has it. Closing any descriptor of a file drops the
+// process's locks of that other kind.
 #include "evaluation/base/file_lock.h"
 
 #include <cerrno>

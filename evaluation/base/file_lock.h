@@ -5,7 +5,7 @@
 
 namespace touchdown::evaluation {
 
-/// Says that this process writes a file, to others that ask. Ends with the process, however it ends.
+/// Shows other processes that this process writes a file. Ends with the process, however it ends.
 class FileLock {
  public:
   /// @throws BadInput if another process has it or it cannot be opened

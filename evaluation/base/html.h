@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pages of reports, which need nothing outside of them.
+// Pages of reports that need no other file.
 #pragma once
 
 #include <string>
 
 namespace touchdown::evaluation {
 
-/// A text with what HTML would take for its own written out.
+/// A text with HTML's special characters escaped.
 std::string Escaped(const std::string& text);
 
-/// A path as an address: what is none of letters, digits and -._~/ written out in percent.
+/// A path as an address: all but letters, digits and -._~/ written in percent.
 std::string Address(const std::string& path);
 
 /// A whole page of that title, with the style that our reports have.

@@ -5,14 +5,13 @@
 
 namespace touchdown::evaluation {
 
-/// Thrown on the way to the program's end, which then has the exit status 128 and the signal's number, as a shell has it. No
-/// std::exception: nothing has failed.
+/// Thrown to end the program. The exit status is then 128 plus the signal's number, as in a shell. It is no
+/// std::exception, because nothing has failed.
 struct Interruption {
   int signal;
 };
 
-/// While it lives SIGINT and SIGTERM do not end the process but are noted, and end its system calls. One at a
-/// time.
+/// While it lives, SIGINT and SIGTERM do not end the process. They are noted, and end its system calls. One at a time.
 class InterruptWatch {
  public:
   InterruptWatch();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Variables that launchers set for the processes that they start. Open MPI's mpirun has its own, srun of MPICH and of
-// Slurm those of PMI. Newer ones have those of PMIx, which say the rank but not the number of processes. Slurm says the
-// number in a variable of its own. That one alone means nothing, because srun starts other programs too.
+// Variables that launchers set for the processes that they start. Open MPI's mpirun sets its own variables. MPICH's and
+// Slurm's srun set those of PMI. Newer ones have those of PMIx, which say the rank but not the number of processes.
+// Slurm says the number in a variable of its own. That one alone means nothing, because srun starts other programs too.
 #include "evaluation/base/launch.h"
 
 #include <cstdlib>

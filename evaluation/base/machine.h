@@ -7,7 +7,7 @@
 
 namespace touchdown::evaluation {
 
-/// What else a timing depends on, besides build and CPU: where it ran and who ran beside it.
+/// What a timing depends on besides build and CPU: the place and the load.
 struct MachineState {
   std::optional<int> pinned;  ///< the CPU that the thread was bound to
   double load_before = 0.0;   ///< load average over one minute
@@ -24,8 +24,8 @@ double LoadAverage();
 /// may not be used.
 void PinToCpu(int cpu);
 
-/// The compiler optimised this build and no assertion or sanitizer slows it: its timings mean
-/// something.
+/// Whether this build is optimised and no assertion or sanitizer slows it: only then its timings
+/// are meaningful.
 bool TimingsMeanSomething();
 
 }  // namespace touchdown::evaluation

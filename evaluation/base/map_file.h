@@ -11,8 +11,8 @@ namespace touchdown::evaluation {
 /// @throws std::invalid_argument naming the file and what is wrong with it.
 void ReadMapFile(const std::string& path, planning::PersistentMap* map);
 
-/// Makes sure, before a flight, that a map can be written at `path` after it. `option` is the one
-/// that named the path, for the sentence. @throws BadInput
+/// Checks before a flight that a map can be written at `path` after it. `option` is the one that
+/// named the path, for the sentence. @throws BadInput
 void CheckMapPath(const std::string& option, const std::string& path);
 
 /// Writes the map in the format that the path's ending names; the file appears whole or not at all.

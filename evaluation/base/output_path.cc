@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whether a directory can be written to is found out by writing: permissions alone do not tell of
-// read-only file systems, and root may do anything that they forbid.
+// A directory is tested by writing into it. Permissions alone do not show a read-only file system,
+// and root may write in spite of them.
 #include "evaluation/base/output_path.h"
 
 #include <cerrno>

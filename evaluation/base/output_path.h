@@ -7,8 +7,8 @@
 
 namespace touchdown::evaluation {
 
-/// Makes sure, before a long run, that a file can be written at `path` after it; leaves nothing
-/// behind. Directories are not created. `option` is the one that named the path, for the sentence.
+/// Checks before a long run that a file can be written at `path` after it. Leaves nothing behind.
+/// Directories are not created. `option` is the one that named the path, for the sentence.
 /// @throws BadInput
 void CheckOutputPath(const std::string& option, const std::string& path);
 
@@ -21,8 +21,8 @@ void CheckPicturePath(const std::string& option, const std::string& path);
 /// The same for a page, whose name ends in .html. @throws BadInput
 void CheckPagePath(const std::string& option, const std::string& path);
 
-/// What a command writes or reads, by the option that names it; empty paths are none. @throws BadInput naming two that are the
-/// same file.
+/// The files that a command writes or reads, by the option that names them; empty paths are none. @throws BadInput
+/// naming two that are the same file.
 void CheckApart(const std::vector<std::pair<std::string, std::string>>& files);
 
 }  // namespace touchdown::evaluation

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How far a long run is. The time left takes every piece of work for as long as those before it were in the mean.
+// How far a long run is. The time left assumes that every piece of work takes the mean time of those before it.
 #include "evaluation/base/progress.h"
 
 #include <algorithm>

@@ -8,7 +8,7 @@
 
 namespace touchdown::evaluation {
 
-/// What is counted, in the words of the line that says how far it is.
+/// The counted things, in the words of the progress line.
 struct ProgressText {
   std::string things;   ///< "flights"
   std::string of = {};  ///< what they belong to ("kind C"); it then begins the line
@@ -37,8 +37,8 @@ class ProgressPace {
 using SecondsClock = std::function<double()>;
 double SteadySeconds();
 
-/// Tells how far a long run is: on a terminal in one line that is written over, else in the log. Copies share it. Not to be
-/// used from two threads at a time.
+/// Logs how far a long run is: on a terminal in one line that is overwritten, else in the log. Copies share it. Not to
+/// be used from two threads at a time.
 class ProgressPrinter {
  public:
   explicit ProgressPrinter(SecondsClock clock = SteadySeconds);

@@ -25,8 +25,8 @@ std::string Try() {
   }
 }
 
-// Empty: nothing stands against it. Tried in a process of its own: the rasteriser starts threads that stay, and a
-// process with threads is not to be forked, as a sweep forks for its trials.
+// Empty if rendering works. It is tried in a separate process, because the rasteriser starts threads that stay. A
+// process with threads must not be forked, and a sweep forks for its trials.
 std::optional<std::string> WhyNotRender() {
   constexpr double kTimeout = 60.0;  // [s]
   WorkerProcess process([](int) { return Try(); }, kTimeout);

@@ -11,11 +11,11 @@
 
 namespace touchdown::evaluation {
 
-/// What a result file says of itself in its table `manifest`: pairs of key and value.
+/// Facts for a result file's table `manifest`: pairs of key and value.
 using ManifestFacts = std::vector<std::pair<std::string, std::string>>;
 
-/// What a file says that it is. A format whose tables change gets a new version: readers refuse those
-/// that they do not know.
+/// The format that a file states. A format whose tables change gets a new version: readers refuse versions that they do
+/// not know.
 struct ResultFormat {
   const char* name;
   int version;
@@ -24,12 +24,12 @@ struct ResultFormat {
 /// Where times were taken: `pinned_cpu`, `load_before`, `load_after`.
 void AddMachine(const MachineState& machine, ManifestFacts* facts);
 
-/// What a result file holds: the table `manifest` (key, value) with `format`, `version`, the facts and the
-/// build, and the tables of `schema` (SQL), which `fill` fills; in one transaction. @throws SqliteError
+/// Fills a result file in one transaction. It gets the table `manifest` (key, value) with `format`, `version`, the
+/// facts and the build. It also gets the tables of `schema` (SQL), which `fill` fills. @throws SqliteError
 void FillResultFile(SqliteDb& db, const ResultFormat& format, const char* schema,
                     const ManifestFacts& facts, const std::function<void(SqliteDb&)>& fill);
 
-/// The file has that table: it is a result file, and no record of a flight.
+/// Whether the file has that table: then it is a result file, and no record of a flight.
 bool HasManifest(SqliteDb& db);
 
 /// Writes a result file, an SQLite file that appears at `path` when it is complete, see FillResultFile.

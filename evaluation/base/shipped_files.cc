@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where shipped files are: relative to the program first (a build tree or an installation can be
-// moved), then where this build's source tree was.
+// Where shipped files are. The program's own place is searched first, because a build tree or an
+// installation can be moved; then this build's source tree.
 #include <algorithm>
 #include <filesystem>
 
@@ -36,7 +36,7 @@ fs::path ProgramDirectory() {
   return error ? fs::path(".") : program.parent_path();
 }
 
-// Of the installation that the program belongs to, of the one that it was built against, of the source tree.
+// Of the program's installation, of the installation that it was built against, and of the source tree.
 std::vector<std::string> Shipped(const char* folder) {
   std::vector<fs::path> candidates = {ProgramDirectory() / "../share/touchdown" / folder};
   if (!ShareDirectory().empty()) candidates.push_back(fs::path(ShareDirectory()) / folder);

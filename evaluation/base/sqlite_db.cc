@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A thin owner around SQLite's C interface: what a record and a trial table need and no more.
-// Every return code is looked at and becomes an SqliteError with the library's own words.
+// A thin owner around SQLite's C interface, with only what a record and a trial table need. Every
+// return code is checked. An error becomes an SqliteError with the library's own words.
 #include "evaluation/base/sqlite_db.h"
 
 #include <cmath>
@@ -128,8 +128,8 @@ bool IsSqliteFile(const std::string& path) {
 }
 
 SqliteDb::SqliteDb(const std::string& path, Mode mode) {
-  // A reader must be able to recover what a killed writer left: it opens for writing, where the file lets
-  // it, and is kept from doing so below.
+  // A reader must be able to recover what a killed writer left. So it opens for writing where the file allows it, and
+  // the pragma below prevents writes.
   int flags = SQLITE_OPEN_READWRITE;
   if (mode == Mode::kCreate) flags |= SQLITE_OPEN_CREATE;
   const int code = sqlite3_open_v2(path.c_str(), &db_, flags, nullptr);

@@ -19,7 +19,7 @@ struct SqliteError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// What stands in a column: nothing, a whole number, a number, a text.
+/// The value of a column: nothing, a whole number, a number or a text.
 using SqlValue = std::variant<std::monostate, std::int64_t, double, std::string>;
 
 /// Bytes that are no text. They outlive the statement's run.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The exact binomial interval of Clopper and Pearson (1934) through Boost.Math's beta quantiles:
-// each one-sided bound is taken at (1 - confidence) / 2. Sample quantiles are type 7 of Hyndman
-// and Fan (1996).
+// The exact binomial interval of Clopper and Pearson (1934) through Boost.Math's beta quantiles.
+// Each one-sided bound is taken at (1 - confidence) / 2. Sample quantiles are type 7 of Hyndman and
+// Fan (1996).
 #include "evaluation/base/statistics.h"
 
 #include <algorithm>

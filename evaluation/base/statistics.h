@@ -21,11 +21,11 @@ Interval ClopperPearson(int successes, int trials, double confidence = 0.95);
 /// default of numpy and R). Empty for no values. @throws std::invalid_argument for q outside [0,
 /// 1].
 std::optional<double> Quantile(std::vector<double> values, double q);
-/// The same of values that are in order already, which it takes on trust.
+/// The same for values that are already in order; this is not checked.
 std::optional<double> QuantileOfSorted(const std::vector<double>& values, double q);
 
-/// Four figures of a sample. A value that is infinite (a failure's time) makes the quantiles that
-/// reach it infinite; a sample without values has none.
+/// Four figures of a sample. An infinite value (a failure's time) makes the quantiles that reach it
+/// infinite. An empty sample has none.
 struct Quantiles {
   std::optional<double> median, p95, p99, max;
 };

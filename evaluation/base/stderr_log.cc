@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One place writes to stderr, so that lines of the log and the line that is written over do not mix. Each text
-// is one write: what another process writes stands before or behind it.
+// One place writes to stderr, so that lines of the log and the line that is written over do not mix. Each text is one
+// write, so the output of another process is before or after it.
 #include "evaluation/base/stderr_log.h"
 
 #include <algorithm>

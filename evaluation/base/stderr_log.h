@@ -11,8 +11,8 @@ void LogToStderr();
 /// Stderr is a terminal on which a line can be written over.
 bool StderrIsTerminal();
 
-/// Shows `text` in the terminal's last line, in place of what was shown there: after the program's name if there is room for
-/// both, else alone and cut to the width. Lines of the log appear above it.
+/// Shows `text` in the terminal's last line and replaces what was shown there. The program's name precedes it if there
+/// is room for both; else it stands alone, cut to the width. Lines of the log appear above it.
 void ShowStatus(const std::string& text);
 
 /// Leaves what is shown where it stands: what is written next begins a new line.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a sentence says that refuses a name: what was probably meant, and what there is.
+// Parts of a sentence that refuses a name: the name that was probably meant, and the known names.
 #pragma once
 
 #include <string>
@@ -8,20 +8,20 @@
 
 namespace touchdown::evaluation {
 
-/// Letters added, left out, replaced, or changed with their neighbour, that make one word of the other (Damerau and
-/// Levenshtein; nothing is changed twice).
+/// Number of edits that turn one word into the other: letters added, left out, replaced, or swapped with their
+/// neighbour (Damerau and Levenshtein; nothing is changed twice).
 int EditDistance(std::string_view a, std::string_view b);
 
-/// " (did you mean land?)": the nearest of `names`, the first of several. Nothing if none is near, or if `word` is one
-/// of them. Of dotted names one part alone may differ, and is compared alone; those of the same group are asked before others.
+/// " (did you mean land?)": the nearest of `names`, the first of several. Empty if none is near, or if `word` is one of
+/// them. Of dotted names only one part may differ, and it alone is compared; names of the same group come first.
 std::string DidYouMean(std::string_view word, const std::vector<std::string>& names);
 
 /// This, and "; <lead> a, b or c" with the names: a long list only where none is near.
 std::string Instead(std::string_view word, const std::vector<std::string>& names,
                     const std::string& lead);
 
-/// The sentence of a room below that refuses `word`: of one that ends in "; known: a, b" the list becomes Instead's. Another one
-/// stays as it is.
+/// The sentence of a lower room that refuses `word`. In one that ends in "; known: a, b" the list becomes Instead's.
+/// Another one stays as it is.
 std::string WithSuggestion(const std::string& sentence, std::string_view word,
                            const std::vector<std::string>& names);
 

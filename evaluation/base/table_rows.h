@@ -17,8 +17,8 @@
 
 namespace touchdown::evaluation {
 
-/// Steps through a table's rows and hands out their columns in order. What is missing or out of its
-/// range throws std::invalid_argument with words that go on from the name of the file.
+/// Steps through a table's rows and gives their columns in order. A value that is missing or out of
+/// its range throws std::invalid_argument. Its message continues the name of the file.
 class TableRows {
  public:
   TableRows(SqliteDb& db, std::string table, const std::string& columns, const std::string& order)

@@ -7,17 +7,16 @@
 
 namespace touchdown::evaluation {
 
-/// What stands between the `separator`s in `text`, in order: one more than there are of them, empty ones
-/// too.
+/// The parts of `text` between the `separator`s, in order, also empty ones: one more than there are separators.
 std::vector<std::string> Split(const std::string& text, char separator);
 
 /// "a, b or c".
 std::string Enumerate(const std::vector<std::string>& words);
 
-/// A sentence without the full stops and ends of lines behind it, to stand in another one.
+/// A sentence without its full stops and ends of lines, for use within another sentence.
 std::string WithoutStop(std::string sentence);
 
-/// With control characters as a program's source has them: "a\n", "\x1b".
+/// With control characters as in a program's source: "a\n", "\x1b".
 std::string InOneLine(std::string_view text);
 
 /// "signal 9 (Killed)".

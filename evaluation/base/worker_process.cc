@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Two forks. The worker is forked once, before its maker opens files or starts MPI, and stays as small as it was. For
-// each piece of work it forks a child, and reads its answer from a pipe until the child closes it or the time is up.
-// The kernel kills both when the process above them ends, however it ends. Both ignore the signals of a keyboard, which
+// each item it forks a child. It reads the child's answer from a pipe until the child closes it or the time is up. The
+// kernel kills both when the process above them ends, however it ends. Both ignore the signals of a keyboard, which
 // reach the whole group: their maker decides.
 #include "evaluation/base/worker_process.h"
 
@@ -30,7 +30,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// What goes before a reply's text.
+// The header of a reply.
 struct Head {
   std::int32_t item;
   WorkerReply::End end;
@@ -82,7 +82,7 @@ int Wait(pid_t process) {
   return status;
 }
 
-// What can be read until the other end is closed, or false when the time is up.
+// Reads until the other end is closed; false when the time is up.
 bool ReadUntil(int from, Clock::time_point deadline, std::string* text) {
   std::array<char, 65536> buffer;
   for (;;) {
@@ -109,12 +109,12 @@ bool Unwrap(std::string* text) {
   return text->size() == size;
 }
 
-// noexcept: what is thrown ends this process and does not get to a handler of the process that made it.
+// noexcept: an exception ends this process and does not reach a handler of the process that made it.
 [[noreturn]] void Answer(const WorkerProcess::Work& work, int item, int to) noexcept {
   const std::string text = work(item);
   const std::uint64_t size = text.size();
   const bool told = WriteAll(to, &size, sizeof(size)) && WriteAll(to, text.data(), text.size());
-  // Not exit(): nothing of what the maker has open or would write at its end is this process's.
+  // Not exit(): this process must not close or flush anything of its maker.
   _exit(told ? 0 : 1);
 }
 
@@ -192,13 +192,13 @@ WorkerProcess::WorkerProcess(WorkerProcess&& other) noexcept
 WorkerProcess::~WorkerProcess() {
   if (process_ < 0) return;
   close(socket_);
-  kill(process_, SIGKILL);  // and with it, by BindTo, what it has under way
+  kill(process_, SIGKILL);  // and with it, by BindTo, its current work
   Wait(process_);
 }
 
 void WorkerProcess::Start(int item) {
   const std::int32_t number = item;
-  // Not write(): a worker that is gone shows in Receive, not as a signal to this process.
+  // Not write(): a dead worker shows in Receive, not as a signal to this process.
   send(socket_, &number, sizeof(number), MSG_NOSIGNAL);
   busy_ = true;
 }

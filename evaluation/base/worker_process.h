@@ -8,17 +8,17 @@
 
 namespace touchdown::evaluation {
 
-/// What became of one piece of work.
+/// The result of one piece of work.
 struct WorkerReply {
   enum class End { kDone, kDied, kTimedOut };
   int item = 0;
   End end = End::kDone;
-  std::string text;  ///< what the work gave; of kDied what it died of, in words
+  std::string text;  ///< what the work gave; for kDied the cause, in words
 };
 
-/// A process that waits for numbers and answers each with `work(number)`, done in a child process of its
-/// own: work that dies or never ends costs nothing but its own result. It is a copy of the process that
-/// makes it, as that is then; which should have no other threads.
+/// A process that waits for numbers and answers each with `work(number)`. A child process of its own does each piece of
+/// work, so work that crashes or never ends loses only its own result. The worker is a copy of the process that makes
+/// it, at that time; that process should have no other threads.
 class WorkerProcess {
  public:
   using Work = std::function<std::string(int item)>;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a depth frame costs to fuse: the planner's rolling map, inflation included, beside
+// The cost of fusing a depth frame. It compares the planner's rolling map, with inflation, and
 // octomap::OcTree::insertPointCloud, plain and discretised, without inflation. Both get the same
 // frames in turn, from an empty map on; times are thread CPU times, OctoMap's without making the
 // point cloud. Counters: ms a frame of both, how many times OctoMap's is longer, and how far they

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One set of depth frames for the planner's rolling map and for OctoMap, under equal terms.
+// One set of depth frames for the planner's rolling map and for OctoMap, under equal conditions.
 #pragma once
 
 #include <cmath>
@@ -43,8 +43,8 @@ inline MapFlight ForestFlight() {
 }
 
 /// What a level camera sees that flies the way at 1.5 m/s and takes `rate` images a second [Hz].
-/// The map's frame is off the world's by some centimetres: surfaces of both worlds lie exactly
-/// between cells else, and rounding alone would say in which one a return ends.
+/// The map's frame is off the world's by some centimetres. Without that, surfaces of both worlds
+/// lie exactly between cells, and rounding alone decides in which cell a return ends.
 inline std::vector<estimation::DepthFrame> DepthFrames(const MapFlight& flight, int width,
                                                        int height, double rate) {
   sim::DepthCameraConfig config;
@@ -69,7 +69,7 @@ inline std::vector<estimation::DepthFrame> DepthFrames(const MapFlight& flight, 
   return frames;
 }
 
-/// The rolling map's options, but for what OctoMap does not have: ground, a least range, and a
+/// The rolling map's options, without what OctoMap does not have: ground, a least range, and a
 /// window that ends before the rays do.
 inline planning::OccupancyMapOptions EqualOptions() {
   planning::OccupancyMapOptions options;
@@ -89,7 +89,7 @@ inline octomap::OcTree EqualTree(const planning::OccupancyMapOptions& options) {
   return tree;
 }
 
-/// The frame as points in W. A pixel without a return is a point beyond the largest range: OctoMap
+/// The frame as points in W. A pixel without a return is a point beyond the largest range. OctoMap
 /// then clears the ray up to that range, as the rolling map does.
 inline octomap::Pointcloud CloudOf(const estimation::DepthFrame& frame) {
   octomap::Pointcloud cloud;

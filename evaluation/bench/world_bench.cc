@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What large worlds cost: a depth frame of 80 x 60 and a step of the physics, the vehicle amid what stands there.
+// The cost of large worlds, with the vehicle amid the obstacles: a depth frame of 80 x 60 and a step of the physics.
 #include <cmath>
 #include <memory>
 #include <string>

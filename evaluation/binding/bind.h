@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the parts of the Python module have in common.
+// Shared by the parts of the Python module.
 #pragma once
 
 #include <atomic>
@@ -23,8 +23,8 @@ namespace touchdown::binding {
 
 namespace py = pybind11;
 
-/// An object that calls share or one alone may change: others raise RuntimeError meanwhile, whether they come from
-/// another thread or from a term, planner or callback that is called.
+/// An object that several calls may share, or that one call alone may change. Meanwhile other calls raise RuntimeError,
+/// from another thread as well as from a term, planner or callback within the call.
 class InUse {
  public:
   explicit InUse(const char* name) : name_(name) {}
@@ -80,7 +80,7 @@ class Borrowed {
   }
   void Return() { it_ = nullptr; }
 
-  /// Raises RuntimeError for who may not use it. `name`: "this map".
+  /// Raises RuntimeError if the caller may not use it. `name`: "this map".
   const T& get(const char* name) const {
     if (it_ == nullptr) {
       throw std::runtime_error(std::string(name) + " is of a call that has ended");
@@ -108,14 +108,14 @@ class Plain {
     names_.append(name);
     return *this;
   }
-  /// What Python gives it and takes of it is another type than what is held.
+  /// The type that Python sets and gets differs from the type that is held.
   template <class Get, class Set>
   Plain& Field(const char* name, Get get, Set set, const char* doc = nullptr) {
     class_.def_property(name, get, set, doc ? doc : DocOf(name));
     names_.append(name);
     return *this;
   }
-  /// May be looked at alone.
+  /// Read-only.
   template <class Get>
   Plain& Look(const char* name, Get get, const char* doc = nullptr) {
     class_.def_property_readonly(name, get, doc ? doc : DocOf(name));

@@ -19,7 +19,7 @@ using planning::UniformBspline;
 
 namespace {
 
-/// A landing problem with what it is to outlive.
+/// A landing problem with the objects that must outlive it.
 class OwnLanding : public Solvable {
  public:
   OwnLanding(int segments, const LandingProblemOptions& options)

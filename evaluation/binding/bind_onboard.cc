@@ -17,7 +17,7 @@ using control::OnboardOptions;
 
 namespace {
 
-/// With what it was made from.
+/// With the objects that it was made from.
 class OwnOnboard {
  public:
   explicit OwnOnboard(const OnboardOptions& options)

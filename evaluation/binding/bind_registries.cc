@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What there is, with what Python adds to it.
+// The library's parts, with those that Python adds.
 #include "evaluation/binding/bind.h"
 #include "evaluation/binding/call.h"
 #include "evaluation/binding/part_registries.h"

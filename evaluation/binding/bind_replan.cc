@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One replanning step, what it proves, and what it tried.
+// One replanning step, its proof, and its attempts.
 #include <map>
 #include <memory>
 

@@ -49,7 +49,7 @@ class PythonPrediction : public PadPrediction {
         return state.cast<PadState>();
       });
     } catch (const std::exception&) {
-      return Unknown();  // what was raised is kept for the end of the call
+      return Unknown();  // the raised error is kept for the end of the call
     }
   }
   bool has_deck() const noexcept override { return has_deck_; }

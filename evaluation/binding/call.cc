@@ -18,7 +18,8 @@ std::thread::id main_thread;
 
 bool IsMain() { return std::this_thread::get_id() == main_thread; }
 
-// Threads that wait for the lock while the interpreter goes are ended in the middle of C++: so none may be left in a call.
+// Threads that wait for the lock while the interpreter ends are ended in the middle of C++. So none may be left in a
+// call.
 void EndCalls() {
   ending = true;
   const pybind11::gil_scoped_release release;

@@ -12,7 +12,7 @@
 
 namespace touchdown::binding {
 
-/// Thrown through C++ where Python code that it called has raised: the call that Python waits for raises that then.
+/// Thrown through C++ where called Python code has raised. The call for which Python waits then raises the kept error.
 class PythonRaised : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -31,15 +31,15 @@ class Call {
 
   /// Keeps the first error. The lock is held.
   void Keep(const pybind11::error_already_set& error);
-  /// An error is kept: what is called may end.
+  /// An error is kept: the called code may end.
   bool failed() const { return error_.has_value(); }
-  /// What is kept is no Exception, but Ctrl-C or the interpreter's end. Then the call around this one fails, too.
+  /// The kept error is no Exception, but Ctrl-C or the interpreter's end. Then the call around this one fails, too.
   bool interrupted();
-  /// What is kept, in words.
+  /// The kept error, in words.
   std::string what() const;
   /// The same, and Ctrl-C: it looks for signals 50 times a second at most. The lock is not held.
   bool MustEnd();
-  /// Raises what is kept. The lock is held.
+  /// Raises the kept error. The lock is held.
   void Raise();
 
  private:
@@ -48,8 +48,8 @@ class Call {
   std::chrono::steady_clock::time_point looked_;
 };
 
-/// When the interpreter ends, calls of other threads than its main one end before it, as by Ctrl-C, and later ones never
-/// return. Once, when the module is imported.
+/// When the interpreter ends, calls of other threads than its main one end first, as by Ctrl-C; later ones never
+/// return. Called once, when the module is imported.
 void HearOfTheEnd();
 
 /// A call is under way in this thread. The lock is held.
@@ -64,7 +64,7 @@ class CallGuard {
 /// The interpreter ends, and this is not its main thread.
 bool MustEndWithIt();
 
-/// Calls `work` without the lock. What Python code that it calls raises, and Ctrl-C, is raised in the end, before
+/// Calls `work` without the lock. Errors of Python code that it calls, and Ctrl-C, are raised in the end. They precede
 /// what C++ throws.
 template <class Work>
 auto WithoutLock(Work&& work) {
@@ -89,7 +89,7 @@ auto WithoutLock(Work&& work) {
   }
 }
 
-/// Calls `work`, which uses Python, with the lock. @throws PythonRaised; where no call waits what was raised itself
+/// Calls `work`, which uses Python, with the lock. @throws PythonRaised; where no call waits, the raised error itself
 template <class Work>
 auto WithLock(Work&& work) {
   Call* call = Call::Now();

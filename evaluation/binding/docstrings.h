@@ -6,10 +6,10 @@
 
 namespace touchdown::binding {
 
-/// What the public headers say, by "Class::member": made by docstrings.py when the module is built.
+/// The doc comments of the public headers, by "Class::member": made by docstrings.py when the module is built.
 const std::map<std::string_view, const char*>& Docstrings();
 
-/// Of one name; nothing of one whose name says all. A test sees to it that all else is told.
+/// The doc of one name; empty if the name says all. A test checks that all others have one.
 const char* Doc(std::string_view name);
 
 }  // namespace touchdown::binding

@@ -8,7 +8,7 @@ import re
 import sys
 from pathlib import Path
 
-# What is said of C++ in the words of Python.
+# Terms of C++ and their words in Python.
 WORDS = [
     (r"@throws |[Tt]hrows (?=std::)", "Raises "),
     (r"std::invalid_argument", "ValueError"),
@@ -43,7 +43,7 @@ def declared(code):
 
 
 def entries(path):
-    """(name, comment, whether it is a function) of everything that a header says something of."""
+    """(name, comment, whether it is a function) of every commented declaration of a header."""
     found, scopes, depth, comment = {}, [], 0, []
     last = None
     for line in Path(path).read_text(encoding="utf-8").splitlines():

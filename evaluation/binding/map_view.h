@@ -6,7 +6,7 @@
 
 namespace touchdown::binding {
 
-/// A map that may be looked at: one's own, or one that is lent for a call.
+/// A map for reading: one's own, or one that is lent for a call.
 class MapView {
  public:
   MapView() = default;
@@ -14,7 +14,7 @@ class MapView {
   MapView& operator=(const MapView&) = delete;
   virtual ~MapView() = default;
 
-  /// Raises RuntimeError for one that is lent no more.
+  /// Raises RuntimeError if the map is no longer lent.
   virtual const planning::OccupancyMap& get() const { return lent.get("this map"); }
 
   Borrowed<planning::OccupancyMap> lent;

@@ -15,7 +15,7 @@
 
 namespace touchdown::binding {
 
-/// What a program of one's own offers: the library's parts, and those of Python.
+/// What a Python program offers: the library's parts, and its own in Python.
 struct PartRegistries {
   evaluation::Registries all = evaluation::StandardRegistries();
   std::set<std::string> own;                                    ///< names of what was entered

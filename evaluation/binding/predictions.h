@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where something will be: a pad, a goal, or whatever Python says.
+// The predicted position of a pad, a goal, or anything that Python defines.
 #pragma once
 
 #include <memory>
@@ -18,7 +18,7 @@ class Prediction {
   explicit Prediction(std::shared_ptr<const estimation::PadPrediction> owned)
       : owned_(std::move(owned)) {}
 
-  /// Raises RuntimeError for one that is lent no more.
+  /// Raises RuntimeError if it is no longer lent.
   const estimation::PadPrediction& get() const {
     return owned_ ? *owned_ : lent.get("this prediction");
   }
@@ -30,8 +30,8 @@ class Prediction {
   std::shared_ptr<const estimation::PadPrediction> owned_;
 };
 
-/// What C++ can ask: of a Prediction that Python owns, or of any object with at(t), which gives a PadState. Raises
-/// TypeError, and ValueError for what was lent.
+/// C++'s view of a Prediction that Python owns, or of any object with at(t), which gives a PadState. Raises TypeError,
+/// and ValueError for a lent one.
 std::shared_ptr<const estimation::PadPrediction> PredictionOf(const pybind11::object& object);
 
 /// Lends a prediction to Python while it lives; None without one.

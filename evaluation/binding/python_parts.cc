@@ -90,7 +90,7 @@ class PythonPlanner : public planning::Planner {
     if (input.pad == nullptr) return Rest(input, 0.0, map);
     result_.times = {};
     planning::StageTimer total(&result_.times.total);
-    // Shortly before contact the plan that leads there goes on: a new one would put it off.
+    // Shortly before contact the plan to contact goes on, because a new one would delay it.
     const bool goes_on = touches_ && next_.t_end() - input.t_start < kShortest;
     if (goes_on && input.endpoint.leads_to_contact()) return Keep();
     std::optional<UniformBspline> curve;

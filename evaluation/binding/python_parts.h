@@ -8,8 +8,8 @@
 
 namespace touchdown::binding {
 
-/// The entries of classes that derive from touchdown.Planner, Controller and PadPredictor. Raise what is wrong with
-/// their attributes.
+/// The entries of classes that derive from touchdown.Planner, Controller and PadPredictor. Raise errors of their
+/// attributes.
 evaluation::PlannerEntry PythonPlannerEntry(const pybind11::object& type);
 evaluation::ControllerEntry PythonControllerEntry(const pybind11::object& type);
 evaluation::PredictorEntry PythonPredictorEntry(const pybind11::object& type);

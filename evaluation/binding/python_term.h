@@ -15,18 +15,18 @@
 
 namespace touchdown::binding {
 
-/// What the calls of a term cost, of all its instances since it was entered.
+/// The cost of a term's calls, over all its instances since it was entered.
 struct TermTime {
   long calls = 0;
   long windows = 0;  ///< that were asked for, those of differences included
   double wall_s = 0.0;
 };
 
-/// Raises TypeError where it is no instance of a touchdown.Term.
+/// Raises TypeError if it is no instance of a touchdown.Term.
 void RequireTerm(const pybind11::object& term);
 
-/// The term of a Python object for a problem with so many blocks of this size. The object is asked for everything, and
-/// its functions only for arrays. Raises what is wrong with its attributes.
+/// The term of a Python object for a problem with so many blocks of this size. Every call goes to the object, but its
+/// functions are called only for arrays. Raises errors of its attributes.
 std::shared_ptr<solvers::Term> MakePythonTerm(const pybind11::object& term, int blocks,
                                               int block_size,
                                               std::shared_ptr<TermTime> time = nullptr);
@@ -40,7 +40,7 @@ std::string WhatIsWrong(const pybind11::object& type, const std::string& term,
                         const std::string& complaint,
                         const std::vector<planning::TermCheckRow>& rows);
 
-/// What a solve is about, as its terms are told: touchdown's LandingContext without what ends with the call.
+/// The context of a solve for its terms: touchdown's LandingContext without what is valid only during the call.
 struct TermContext {
   int segments = 0;
   planning::SplineState start;

@@ -43,7 +43,7 @@ def split(text):
 
 
 def typed(text, given):
-    """A type of pybind11 as Python has it; of what is `given` arrays may be anything that becomes one."""
+    """A type of pybind11 in Python's words. With `given`, an array may be anything that becomes one."""
     text = ARRAY.sub(lambda m: "ArrayLike" if given else f"NDArray[{KINDS[m[2]]}]", text)
     text = re.sub(r"\bnumpy\.ndarray\b", "ArrayLike" if given else "NDArray[Any]", text)
     text = text.replace("touchdown._touchdown.", "")

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Workers are forked before MPI is started and the file opened; then trials are handed out one by one, and each reply is
-// written before the next is looked at. A trial is a pure function of its scenario and seed, so that the rows
-// do not depend on who flew them, nor in which order.
+// Workers are forked before MPI is started and the file opened. Then trials are handed out one by one, and each reply
+// is written before the next is read. A trial is a pure function of its scenario and seed. So the rows do not depend on
+// who flew them, or in which order.
 #include "evaluation/campaign/campaign.h"
 
 #include <algorithm>
@@ -71,7 +71,7 @@ const SweepTrial& TrialOf(const Campaign& campaign, int index) {
   return campaign.trials.at(static_cast<std::size_t>(index));
 }
 
-// The file, and what is told of it.
+// The file and its progress.
 class Flight {
  public:
   Flight(const Campaign& campaign, const CampaignOptions& options,
@@ -95,7 +95,7 @@ class Flight {
     progress_(state_);
   }
 
-  /// What the file lacks, but for what flies alone.
+  /// The trials that the file lacks, without those that fly alone.
   const std::vector<int>& together() const { return together_; }
   const std::vector<int>& alone() const { return alone_; }
 

@@ -13,7 +13,7 @@
 
 namespace touchdown::evaluation {
 
-/// One trial that is to be flown: everything that decides it.
+/// One trial to be flown: everything that decides it.
 struct SweepTrial {
   int index = 0;                                            ///< its place in the campaign, from 0
   std::uint64_t seed = 0;                                   ///< at most 2^53
@@ -23,7 +23,7 @@ struct SweepTrial {
 
   /// The command that flies it alone.
   std::string Replay() const;
-  /// Its plans take as long as the clock says: beside others it would be another flight.
+  /// Its plans take as long as the clock says. So it flies alone: beside others the flight would differ.
   bool FliesAlone() const;
 };
 
@@ -38,7 +38,7 @@ struct SweepRow {
 SweepTrial MakeTrial(const std::string& scenario_path, const std::vector<std::string>& overrides,
                      const Registries& registries);
 
-/// What a label of the trials is.
+/// A label of the trials.
 struct VariedKey {
   std::string key;
   std::string unit;    ///< empty: none
@@ -67,7 +67,7 @@ struct Shard {
 };
 
 struct CampaignOptions {
-  /// Trials that are flown at a time, but for those that fly alone; each rank of an MPI program flies one.
+  /// Trials that are flown at a time, except those that fly alone. Each rank of an MPI program flies one.
   int jobs = 1;
   std::string
       db;  ///< the file of the trials, which are added to one that is there; empty: none is kept
@@ -91,19 +91,19 @@ struct CampaignResult {
   int at_a_time = 1;  ///< trials that were flown at a time: jobs, or ranks
   /// Ended by SIGINT or SIGTERM before all were flown; what was flown is in the file.
   int interrupted_by = 0;
-  /// False on ranks of an MPI program that only fly: rank 0 has the rows and reports.
+  /// False on ranks of an MPI program that only fly trials. Rank 0 has the rows and reports.
   bool reports = true;
 };
 
-/// Whether this machine can fly the trials: what would fail in all of them is reported once, before the first.
+/// Checks that this machine can fly the trials, so that a common failure is reported once, before the first.
 /// @throws BadInput
 void CheckTrials(const Campaign& campaign);
 
 /// Flies the trials that its file does not hold yet, each in a process of its own. Trials that fly alone come after the
 /// others. Each is added to the file when it ends. One that dies or takes too long becomes a row with outcome `crashed`
-/// or `hung`. The rows do not depend on the number of jobs, ranks or shards, nor on interruptions, but for trials that
-/// fly alone. The calling process should have no other threads. `progress` is called once before the first trial and
-/// after each. @throws BadInput if the file is of another campaign, build or shard; SqliteError
+/// or `hung`. Except for trials that fly alone, the rows do not depend on jobs, ranks, shards or interruptions. The
+/// calling process should have no other threads. `progress` is called once before the first trial and after each.
+/// @throws BadInput if the file is of another campaign, build or shard; SqliteError
 CampaignResult RunCampaign(const Campaign& campaign, const CampaignOptions& options,
                            const Registries& registries,
                            const std::function<void(const CampaignState&)>& progress);
@@ -111,8 +111,8 @@ CampaignResult RunCampaign(const Campaign& campaign, const CampaignOptions& opti
 /// The result of a trial that ended in an error.
 TrialResult FailedTrial(const SweepTrial& trial, const std::string& what);
 
-/// The same in this process, one trial after the other: for parts that cannot be had in another. `fly` is the flight of a
-/// trial; what it throws ends the campaign, and what was flown is in the file.
+/// The same in this process, one trial after the other, for parts that exist only in this process. `fly` flies a trial.
+/// What it throws ends the campaign; the flown trials are in the file.
 CampaignResult FlyHere(const Campaign& campaign, const CampaignOptions& options,
                        const std::function<TrialResult(const SweepTrial&)>& fly,
                        const std::function<void(const CampaignState&)>& progress);

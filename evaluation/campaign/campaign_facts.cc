@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Two figures decide whether trials belong together: the hash of the plan and the hash of the build. All
-// other facts of a manifest only serve to say in words what is different.
+// Two hashes decide whether trials belong together: that of the plan and that of the build. All other facts of a
+// manifest only serve to describe differences in words.
 #include "evaluation/campaign/campaign_facts.h"
 
 #include <algorithm>
@@ -23,14 +23,13 @@ std::string HashOfFile(const std::string& path) {
   return HashOf({std::istreambuf_iterator<char>(file), {}});
 }
 
-// What of a scenario results depend on, as YAML: a file may be gone on with under another description.
+// The part of a scenario that results depend on, as YAML. A file may be continued under another description.
 std::string WhatCounts(Scenario scenario) {
   scenario.description.clear();
   return DumpScenario(scenario);
 }
 
-// Of what a scenario says, and of what the files say that it names. Most trials of a campaign share
-// both.
+// A hash of the scenario and of the files that it names. Most trials of a campaign share both.
 class ScenarioHashes {
  public:
   const std::string& Of(const Scenario& scenario) {

@@ -9,8 +9,8 @@
 
 namespace touchdown::evaluation {
 
-/// "37 of 100 trials, 36 succeeded and 1 failed, 1.21 a second, 52 s left": the time left at the rate since the
-/// beginning, `elapsed_s` ago [s]; trials flown before count for neither.
+/// "37 of 100 trials, 36 succeeded and 1 failed, 1.21 a second, 52 s left". The time left follows from the rate since
+/// the beginning, `elapsed_s` ago [s]. Rate and time left do not include trials flown before.
 std::string CampaignLine(const CampaignState& state, double elapsed_s);
 
 /// Tells the log what is resumed, then how far a campaign is.
@@ -22,8 +22,8 @@ class CampaignProgress {
   std::optional<ProgressPrinter> tell_;  ///< from the first call on
 };
 
-/// Tells the log how far an interrupted campaign came and where its trials are: in the file `db`; empty: nowhere.
-/// The exit status for it: 128 and the signal's number, as a shell has it.
+/// Logs how far an interrupted campaign came and where its trials are: in the file `db`; empty: nowhere. Returns the
+/// exit status: 128 plus the signal's number, as in a shell.
 int Interrupted(const CampaignResult& result, const std::string& db);
 
 }  // namespace touchdown::evaluation

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rank 0 sends numbers, the others answer with replies. Both look for messages every few milliseconds and
-// sleep in between, because MPI's own waiting keeps a processor busy that the flights need. The end: rank 0
-// sends a number that is none, each rank lets go of what it has under way and answers with an empty message, its
-// last; so no message is left unread when MPI is shut down.
-// MPI's functions are called by their second names, which the standard gives them for profilers: the MUMPS that
-// Ipopt links brings empty functions with some of the first names, which are found before the real ones.
+// Rank 0 sends numbers, the others answer with replies. Both look for messages every few milliseconds and sleep in
+// between. MPI's own waiting would keep a processor busy that the flights need. To end, rank 0 sends an invalid number.
+// Each rank then drops its work and answers with an empty message, its last. So no message is left unread when MPI is
+// shut down.
+// MPI's functions are called by the second names that the standard gives them for profilers. The MUMPS that Ipopt links
+// has empty functions with some of the first names, and these are found before the real ones.
 #include "evaluation/campaign/ranks.h"
 
 #include <algorithm>

@@ -9,8 +9,8 @@
 
 namespace touchdown::evaluation {
 
-/// This process as one of the ranks of an MPI program. One in a process's life, and made after its workers,
-/// which are not to be forked from a process that uses MPI.
+/// This process as one of the ranks of an MPI program. Once in a process's life. It is made after the workers, because
+/// they must not be forked from a process that uses MPI.
 class Ranks {
  public:
   /// Starts MPI. @throws BadInput where the build has none

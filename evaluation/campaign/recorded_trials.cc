@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 
 constexpr double kPageTime = 600.0;  // wall time in which a page is made of a record [s]
 
-// Whether the file is a record of this trial, flown by the build of this hash, with the files outside that there are now.
+// Whether the file is a record of this trial, flown by the build of this hash, with the current outside files.
 bool IsRecordOf(const std::string& path, const SweepTrial& trial, const std::string& build_hash) {
   if (!fs::exists(path)) return false;
   try {
@@ -47,12 +47,12 @@ bool IsRecordOf(const std::string& path, const SweepTrial& trial, const std::str
 std::string RecordPath(const RecordedTrial& flight) { return flight.path + ".db"; }
 std::string PagePath(const RecordedTrial& flight) { return flight.path + ".html"; }
 
-// The page is written after the record: one that is there is of it.
+// The page is written after the record, so an existing page belongs to it.
 bool IsThere(const RecordedTrial& flight, const std::string& build_hash) {
   return fs::exists(PagePath(flight)) && IsRecordOf(RecordPath(flight), *flight.trial, build_hash);
 }
 
-// What there is of it, also what a worker left that was stopped.
+// Its existing files, also those of a stopped worker.
 void Remove(const RecordedTrial& flight) {
   const fs::path path(flight.path);
   const std::string name = path.filename().string();
@@ -64,7 +64,7 @@ void Remove(const RecordedTrial& flight) {
   }
 }
 
-// What is wrong; empty: nothing.
+// The fault; empty: none.
 std::string Record(const RecordedTrial& flight, const Registries& registries) {
   try {
     TrialRecord record;

@@ -21,7 +21,7 @@ namespace {
 
 constexpr int kMostTrials = 1000000;
 
-/// One map of the file: every key of it has a reader, what has none is refused.
+/// One map of the file. Every key has a reader; a key without one is refused.
 class MapReader {
  public:
   MapReader(std::string file, std::string label)

@@ -149,7 +149,7 @@ StudyPlan PlanStudy(const StudyFile& file, const StudySelection& selection, std:
 
 namespace {
 
-// Of a part of a study alone, what was asked for.
+// For a part of a study: the selection.
 nlohmann::ordered_json SelectionJson(const StudySelection& selection) {
   using Json = nlohmann::ordered_json;
   if (!selection.Part()) return nullptr;

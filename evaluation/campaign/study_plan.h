@@ -22,14 +22,14 @@ struct StudyPart {
   std::string refusal;  ///< why it is not flown; empty: it is
 };
 
-/// What of a study is flown.
+/// The part of a study to fly.
 struct StudySelection {
   bool quick = false;                ///< the short form
   std::vector<std::string> cells;    ///< names; empty: all
   std::vector<std::string> methods;  ///< names; empty: all
   std::optional<int> trials;         ///< of each method in each cell; none: as the file says
 
-  /// Not the whole study, nor its short form.
+  /// A part: neither the whole study nor its short form.
   bool Part() const { return !cells.empty() || !methods.empty() || trials.has_value(); }
 };
 
@@ -46,9 +46,10 @@ struct StudyPlan {
   bool Records(const StudyPart& part) const;
 };
 
-/// Plans a study. Trial i of every part has the same seed, TrialSeed(seed, i): common random numbers, also of
-/// a part that is selected alone. @throws BadInput as LoadScenario does, but for the backends of a study,
-/// which may refuse a cell; and for a selection that names what is not there, or nothing
+/// Plans a study. Trial i of every part has the same seed, TrialSeed(seed, i) (common random numbers), also in a part
+/// that is selected alone.
+/// @throws BadInput as LoadScenario does; but a backend of a study may refuse a cell. Also for a selection that names
+/// something unknown, or is empty.
 StudyPlan PlanStudy(const StudyFile& file, const StudySelection& selection, std::uint64_t seed,
                     const Registries& registries);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a study came to, in rates with intervals: what its command says without any other program.
+// The results of a study, in rates with intervals. Its command prints them without any other program.
 #pragma once
 
 #include <cstdint>
@@ -36,7 +36,7 @@ struct StudyRates {
   std::vector<PartRates> parts;  ///< in the order in which they were planned
 };
 
-/// Of what the study's folder holds by now. @throws BadInput if it is no study's
+/// The rates of what the study's folder holds now. @throws BadInput if it is no study's
 StudyRates ReadStudyRates(const std::string& folder);
 
 /// For people: a line for each method in each cell, with how its other trials ended.

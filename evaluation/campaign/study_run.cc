@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A study's folder: the trials are a campaign's, beside them stands what the report needs to know.
+// A study's folder: the trials of a campaign, and the data for the report.
 #include "evaluation/campaign/study_run.h"
 
 #include <chrono>
@@ -54,7 +54,7 @@ void WritePlan(const StudyPlan& plan, const std::string& folder, const Json& fli
   file.Commit();
 }
 
-// Of each part that is to be recorded the first trial, and others that are asked for.
+// The first trial of each part that is recorded, and other requested trials.
 void Record(const StudyPlan& plan, const std::string& folder, const std::vector<SweepRow>& rows,
             Recorded which, const CampaignOptions& options, const Registries& registries) {
   std::vector<RecordedTrial> trials;
@@ -87,8 +87,8 @@ CampaignResult FlyStudy(const StudyPlan& plan, const std::string& folder, Campai
   options.db = StudyTablePath(folder, options.shard);
   const bool whole = options.shard.of == 1;
   Json flights = Json::array();
-  // The plan stands there from the first trial on, for reports of what is there by then. It is first told of
-  // progress when the file of the trials is known to be this study's, and in one process of several.
+  // The plan is there from the first trial on, for reports of an unfinished study. It first gets progress when the file
+  // of the trials is known to be this study's, and in only one process.
   const auto progress = [&, begun = false,
                          tell = CampaignProgress()](const CampaignState& state) mutable {
     if (!std::exchange(begun, true) && whole) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Monte Carlo: the trials of a sweep, each with its own seed and its own values of what is varied.
+// Monte Carlo: the trials of a sweep, each with its own seed and its own values of the varied keys.
 #include "evaluation/campaign/sweep.h"
 
 #include <algorithm>
@@ -30,8 +30,8 @@ double RangeEnd(const std::string& text, const std::string& variation) {
   return value;
 }
 
-// Every value that a variation can take must be allowed, whatever a seed draws: the ends of a range
-// stand for all of it. @throws BadInput
+// Every value of a variation must be allowed, whatever a seed draws. The ends of a range stand for
+// all of it. @throws BadInput
 void CheckValues(const Variation& variation, const Registries& registries) {
   const auto key = FindScenarioKey(variation.key, ScenarioKeys(registries));
   std::vector<std::string> values = variation.values;
@@ -64,7 +64,7 @@ std::size_t Combinations(const std::vector<Variation>& variations) {
   return count;
 }
 
-// What is refused may be so because of what is varied: the sentence says what that was.
+// A refusal may be due to the varied values, so the sentence names them.
 SweepTrial MakeVaried(const SweepOptions& options, const std::vector<std::string>& overrides,
                       const std::vector<std::pair<std::string, std::string>>& varied,
                       const Registries& registries) {
@@ -128,7 +128,7 @@ std::uint64_t TrialSeed(std::uint64_t sweep_seed, int index) {
 
 std::vector<SweepTrial> PlanSweep(const SweepOptions& options, const Registries& registries) {
   CheckKeys(options);
-  // Few scenarios are different ones, unless a range is drawn from: each is read and checked once.
+  // Without a range only few scenarios differ. Each is read and checked once.
   std::map<std::vector<std::string>, SweepTrial> loaded;
   std::vector<SweepTrial> trials;
   for (int i = 0; i < options.trials; ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rates and medians by combination of listed values: what is asked of a sweep that varies a key.
+// Rates and medians by combination of listed values, for a sweep that varies a key.
 #include "evaluation/campaign/sweep_cells.h"
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 namespace touchdown::evaluation {
 namespace {
 
-// In order from the start: a median is asked for after every trial, of which there may be very many.
+// Always sorted, because a median is needed after every trial, and there may be very many.
 void Insert(double value, std::vector<double>* sorted) {
   sorted->insert(std::upper_bound(sorted->begin(), sorted->end(), value), value);
 }

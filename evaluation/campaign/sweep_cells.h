@@ -23,7 +23,7 @@ struct CellPlan {
 };
 CellPlan PlanCells(const Campaign& campaign);
 
-/// What the flown trials of a cell came to.
+/// The results of a cell's flown trials.
 struct CellFigures {
   int trials = 0;
   int succeeded = 0;

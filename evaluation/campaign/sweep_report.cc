@@ -21,7 +21,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// A figure of a trial, where it has one, that is summed up over trials.
+// A figure of a trial, if it has one, for a summary over trials.
 struct Figure {
   const char* key;
   const char* label;
@@ -165,7 +165,7 @@ struct FlownCell {
   CellFigures figures;
 };
 
-// What is varied over listed values is told for each: a rate over all of them means nothing.
+// Listed values have a rate each, because a rate over all of them means nothing.
 std::vector<FlownCell> FlownCells(const Campaign& campaign, const std::vector<SweepRow>& rows) {
   const CellPlan plan = PlanCells(campaign);
   std::vector<CellTally> tallies(plan.cells.size());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The columns of a trial stand here once, in two lists that are walked in three ways: to declare the
-// columns, to take their values from a result, and to put them back into one.
+// The columns of a trial are listed here once, in two lists. Three functions walk the lists: they declare the columns,
+// take their values from a result, and put the values back into a result.
 #include "evaluation/campaign/trial_columns.h"
 
 #include <cmath>

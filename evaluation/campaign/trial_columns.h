@@ -9,9 +9,9 @@
 
 namespace touchdown::evaluation {
 
-/// A trial's result as values of the columns of the tables `trial` and `timing`, but for the first, the
-/// trial's number, and its single replans. There and back is the same result, but that numbers which are
-/// not finite come back as NaN, and figures at touchdown only of landings.
+/// A trial's result as values of the columns of the tables `trial` and `timing`, without the first, the trial's number,
+/// and without its single replans. Reading them back gives the same result, with two exceptions. Numbers that are not
+/// finite become NaN, and only landings have figures at touchdown.
 struct TrialValues {
   std::vector<SqlValue> trial;
   std::vector<SqlValue> timing;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is planned stands in every shard and is taken from the first; the flown trials are copied row by row,
-// and the figures of the cells, which no shard could know, are made anew.
+// The plan is in every shard and is taken from the first. The flown trials are copied row by row. The figures of the
+// cells, which no shard can know, are computed anew.
 #include "evaluation/campaign/trial_merge.h"
 
 #include <map>
@@ -33,7 +33,7 @@ std::vector<Input> Open(const std::vector<std::string>& files) {
     } catch (const SqliteError& error) {
       throw BadInput(fmt::format("{}.", error.what()));
     }
-    // All that is read of a file is of one moment, even if it still grows.
+    // All data of a file are from one moment, even if it still grows.
     input.db->Execute("BEGIN");
     input.manifest = ReadManifest(*input.db, path);
     inputs.push_back(std::move(input));

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One row per trial, in one transaction with the figures of its cell. The journal is SQLite's write-ahead log:
-// a process that is killed leaves at most a log which every later reader, a read-only one too, takes
-// into account by itself. What depends on the clock stands in its own tables, so that two files can be
-// compared row by row.
+// One row per trial, in one transaction with the figures of its cell. The journal is SQLite's write-ahead log. A
+// process that is killed leaves at most a log, which every later reader, a read-only one too, takes into account. What
+// depends on the clock is in tables of its own, so that two files can be compared row by row.
 #include "evaluation/campaign/trial_store.h"
 
 #include <filesystem>
@@ -79,7 +78,7 @@ void Fill(SqliteDb& db, const Campaign& campaign, const Shard& shard, const Cell
 
 void Create(const std::string& path, const Campaign& campaign, const Shard& shard,
             const CellPlan& cells) {
-  // The log of a file that was removed without it would be taken for this one's.
+  // The log of a removed file may still be there. SQLite would apply it to this file.
   for (const char* of_log : {"-wal", "-shm", "-journal"}) std::filesystem::remove(path + of_log);
   AtomicFile file(path);
   {
@@ -131,7 +130,7 @@ TrialStore::TrialStore(const std::string& path, const Campaign& campaign, const 
 TrialStore::~TrialStore() {
   if (!db_) return;
   try {
-    // One file again, which can be copied, unless it is being read just now: it is as good with its log.
+    // Becomes one file again, which can be copied. If it is being read just now it keeps its log, which is as good.
     db_->Execute("PRAGMA busy_timeout=0; PRAGMA journal_mode=DELETE");
   } catch (const SqliteError&) {
   }

@@ -18,18 +18,18 @@ namespace touchdown::evaluation {
 /// @throws SqliteError, std::invalid_argument
 std::map<int, TrialResult> ReadTrials(SqliteDb& db, bool with_replan_times);
 
-/// The file of a campaign's trials while it grows (docs/record.md). It holds from the start what is planned;
-/// each trial is there, whole and with the figures of its cell, from the moment that Add returns, whatever
-/// happens to the process later. Others may read meanwhile.
+/// The file of a campaign's trials while it grows (docs/record.md). It holds the plan from the start. From the moment
+/// that Add returns, the trial is in it, whole and with the figures of its cell, whatever happens to the process later.
+/// Others may read meanwhile.
 class TrialStore {
  public:
-  /// What of a file that is there is flown again: nothing, or what says more of the machine than of the
-  /// trial, which is what crashed, hung or ended in an error.
+  /// Which trials of an existing file are flown again: none, or those whose end depends more on the machine than on the
+  /// trial. These crashed, hung or ended in an error.
   enum class Again { kNone, kLost };
 
-  /// Makes the file, or goes on with the one that is there. `path` empty: in memory.
-  /// @throws BadInput if the file there is none of this campaign, shard and build, or is being written by
-  /// another process; SqliteError, std::filesystem::filesystem_error
+  /// Makes the file, or continues the one that is there. `path` empty: in memory.
+  /// @throws BadInput if the existing file is not of this campaign, shard and build, or if another process writes it;
+  /// SqliteError, std::filesystem::filesystem_error
   TrialStore(const std::string& path, const Campaign& campaign, const Shard& shard,
              Again again = Again::kNone);
   ~TrialStore();
@@ -40,7 +40,7 @@ class TrialStore {
   int succeeded() const { return succeeded_; }
   /// @throws SqliteError
   void Add(int trial, const TrialResult& result);
-  /// What the file says, by trial. @throws SqliteError
+  /// The results in the file, by trial. @throws SqliteError
   std::map<int, TrialResult> Results() { return ReadTrials(*db_, true); }
 
  private:
@@ -58,7 +58,7 @@ class TrialStore {
 /// A statement that inserts rows with this many columns.
 SqliteStatement Insert(SqliteDb& db, const std::string& table, std::size_t columns);
 
-/// Makes the figures of all cells anew, from the trials that the file holds. @throws SqliteError
+/// Computes the figures of all cells anew, from the trials in the file. @throws SqliteError
 void WriteCells(SqliteDb& db);
 
 /// Writes a file of rows that were flown. @throws as TrialStore does

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Solver backends on the problems that flights pose, each judged from outside by one merit.
+// Solver backends on the problems that flights pose. Each is judged from outside by one merit.
 #pragma once
 
 #include <cstdint>
@@ -18,8 +18,8 @@ struct CompareOptions {
   std::uint64_t seed = 1;        ///< of drawn flights
   std::vector<std::string> set;  ///< "solver.limits=hard": keys of the scenarios of all flights
   std::optional<int> problems;   ///< most; none: all of one flight, 20 of several
-  /// One of so many solves that are asked for is a problem. Default: each, of one flight; of several one in
-  /// 25, so that hundreds of problems come from dozens of flights.
+  /// Every how many solves one becomes a problem. Default: 1 for one flight; 25 for several, so that hundreds of
+  /// problems come from dozens of flights.
   std::optional<int> every;
   BenchOptions bench;
 };
@@ -33,12 +33,12 @@ struct CompareResult : BenchResult {
   std::vector<std::string> notes;
 };
 
-/// Flies, and has every backend solve the problems that replanning steps pose, as they are posed: with the
-/// same terms, weights, pairs and start. Which are taken is a matter of counting. What the flight's own backend
-/// answers has a say in what is asked next.
-/// A flight that cannot be flown is noted, and the next one is flown. `report(done, all)` is called after each
-/// problem, with 0 for all where it is not known. Throws BadInput if a backend is unknown or named twice, if none can solve the formulation, or if the
-/// flights pose no problem.
+/// Flies, and has every backend solve the problems that replanning steps pose, as they are posed: with the same terms,
+/// weights, pairs and start. Counting alone decides which problems are taken. The answers of the flight's own backend
+/// influence later problems.
+/// A flight that cannot be flown is noted, and the next one is flown. `report(done, all)` is called after each problem,
+/// with 0 for all where it is not known. Throws BadInput if a backend is unknown or named twice, if none can solve the
+/// formulation, or if the flights pose no problem.
 CompareResult RunCompare(const CompareOptions& options, const Registries& registries,
                          const std::function<void(int done, int all)>& report);
 

@@ -40,7 +40,7 @@ std::string SharesText(const std::optional<ShareSummary>& shares) {
                      100.0 * shares->whitening, 100.0 * shares->native, 100.0 * shares->adapter);
 }
 
-// Times over some of the problems are not to be set beside times over all.
+// Times over some of the problems are not comparable with times over all.
 std::string TableRow(const BackendSummary& s, int all, bool interval) {
   std::string solved = SolvedText(s, all);
   if (!s.ran_all) {
@@ -98,7 +98,7 @@ std::string DeadlineTable(double deadline_ms, const std::vector<BackendSummary>&
          "point that it evaluated was better\n";
 }
 
-/// What was solved, in figures.
+/// The solved problems in figures.
 struct ProblemsSummary {
   int all = 0;
   int free_arrival = 0, hard_limits = 0, explicit_endpoint = 0;

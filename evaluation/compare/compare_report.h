@@ -20,7 +20,7 @@ std::string CompareText(const CompareOptions& options, const CompareResult& resu
 nlohmann::ordered_json CompareJson(const CompareOptions& options, const CompareResult& result,
                                    const MachineState& machine);
 
-/// Where its problems come from, and what they are.
+/// The source of its problems, and their kind.
 std::string CompareProblemsText(const CompareResult& result);
 nlohmann::ordered_json CompareProblemsJson(const CompareResult& result);
 

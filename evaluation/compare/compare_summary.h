@@ -19,7 +19,7 @@ struct ShareSummary {
   double adapter = 0.0;
 };
 
-/// What the solves under a deadline came to.
+/// The results of the solves under a deadline.
 struct DeadlineSummary {
   Quantiles wall_ms;  ///< until the call returned
   Quantiles gap;      ///< of the returned point; infinite where it is not feasible

@@ -35,9 +35,8 @@ std::vector<ReferenceProblem> Problems(const std::string& set) {
                                                      : solvers::EqualityForm::kRows);
 }
 
-/// The published start, then others around it: a fifth of a unit and a tenth of each number away
-/// where the set is one of long trajectories, up to a unit and half of each number where it is of a
-/// few variables.
+/// The published start (index 0), then random starts around it. In a set of long trajectories a number x changes by up
+/// to 0.2 + 0.1 |x|. In a set of a few variables it changes by up to 1 + 0.5 |x|.
 Eigen::VectorXd Start(const ReferenceOptions& options, const ReferenceProblem& problem, int index) {
   Eigen::VectorXd start = problem.start;
   if (index == 0) return start;
@@ -63,7 +62,7 @@ class Contest {
     cells_.push_back(std::move(cell));
   }
 
-  /// After all were asked: the optimum may be the best that any backend found.
+  /// After all backends: the optimum may be the best that any of them found.
   std::vector<ReferenceCell> Judge() {
     for (ReferenceCell& cell : cells_) {
       for (ReferenceSolve& solve : cell.solves) {
@@ -91,7 +90,7 @@ class Contest {
     return {.start = index, .summary = result};
   }
 
-  /// A claim at a point that is not feasible is one of no optimum.
+  /// At a point that is not feasible, a claim of convergence counts as no optimum.
   Verdict Of(const solvers::SolverSummary& summary) const {
     if (summary.status != SolveStatus::kConverged) return Verdict::kNotClaimed;
     ReferenceProblem judged = problem_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Solver backends on problems that are no landings, each claim judged by the optima that are known.
+// Solver backends on problems that are no landings. Each claim is judged by the known optima.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ struct ReferenceOptions {
   double most_seconds = 10.0;  ///< wall time of a solve
 };
 
-/// What a solve came to, judged by the optima that are known, of which one may be local.
+/// The result of a solve, judged by the known optima. One of them may be local.
 enum class Verdict {
   kRight,       ///< converged to one, within 1e-6
   kElsewhere,   ///< converged to another point: a false claim, where all optima are published

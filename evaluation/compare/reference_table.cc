@@ -41,7 +41,7 @@ void WriteCells(SqliteDb& db, const ReferenceResult& result) {
     for (const ReferenceSolve& of_start : cell.solves) {
       const solvers::SolverSummary& s = of_start.summary;
       const solvers::Optimality& check = s.optimality;
-      // What was not looked at has no figures.
+      // A solve that was not checked has no figures.
       const auto of_check = [&check](double number) {
         return check.evaluated ? std::optional(number) : std::nullopt;
       };

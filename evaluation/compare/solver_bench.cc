@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The measurement. The reference cost of a problem is the best feasible one over tight solves of
-// all backends, `banded` and `ipopt` always among them where they can solve it, even when they are
-// out of the timed solves. A timed solve runs with tolerances that never end it and is ended from outside by
-// one test for all, at its evaluations: cost within the gap of the reference, rows within
-// Evaluator::kFeasible. No backend's own idea of convergence decides. The point it returns is evaluated anew;
-// what it says of itself counts for nothing.
+// The measurement. The reference cost of a problem is the best feasible one over tight solves of all backends. `banded`
+// and `ipopt` are always among them where they can solve it, even when they are not timed. A timed solve runs with
+// tolerances that never end it. One test for all, outside of the backend, ends it at one of its evaluations: cost
+// within the gap of the reference, rows within Evaluator::kFeasible. So no backend's own convergence test decides. The
+// returned point is evaluated anew; the backend's own report is not used.
 #include "evaluation/compare/solver_bench.h"
 
 #include <algorithm>
@@ -31,11 +30,11 @@ using solvers::Stop;
 
 constexpr double kSolveLimit = 5.0;  // wall time of any one solve [s]
 constexpr int kIterations = 3000;    // of any one solve
-// Tolerances below rounding never end some solves: one that gains nothing in so many evaluations is at its end.
+// Tolerances below rounding never end some solves. A solve that gains nothing in so many evaluations is ended.
 constexpr int kIdleEvaluations = 200;
 constexpr double kGain = 1e-13;  // of the cost
-// What tolerances are set to where a backend's own test is to mean something, and where it shall
-// not end a solve before the test from outside does.
+// Tight tolerances are for solves in which the backend's own test decides. With the others the
+// backend does not end a solve before the test from outside does.
 constexpr double kTight = 1e-10;
 constexpr double kTightViolation = 1e-9;
 constexpr double kNever = 1e-15;

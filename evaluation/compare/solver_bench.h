@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Solver backends on one problem after another, each judged from outside by one merit.
+// Solver backends on one problem after another. Each is judged from outside by one merit.
 #pragma once
 
 #include <cstdint>
@@ -24,15 +24,15 @@ struct BenchOptions {
   int repeats = 3;                    ///< of the timed solve; their median counts
   bool shares = true;                 ///< solve once more with a clock on the parts
   std::optional<double> deadline_ms;  ///< also solve under this wall-clock limit
-  /// Wall time that a backend may use, tight solves not counted: one that used more is skipped in the
-  /// remaining problems. The referees among them still help to find the reference.
+  /// Wall time that a backend may use, without tight solves. A backend that used more is skipped in the remaining
+  /// problems. The referees among them still help to find the reference.
   double backend_seconds = 20.0;
   std::uint64_t seed = 1;  ///< of the order in which backends take turns
 };
 
 /// What a solve was made for.
 enum class SolvePhase {
-  kTight,     ///< tight tolerances: the reference cost, and whether success is told rightly
+  kTight,     ///< tight tolerances: for the reference cost, and to check the claim of success
   kGap,       ///< stopped from outside once it is within the gap: the time that counts
   kShares,    ///< the same, with a clock on its parts
   kDeadline,  ///< default tolerances under a wall-clock limit
@@ -90,8 +90,8 @@ struct BenchResult {
   int refused = 0;  ///< problems that no compared backend could take
 };
 
-/// All backends of a registry, which solve the problems that they are shown, in place. Backends take turns
-/// in a random order that repeats with the seed, so that what disturbs the machine meets all of them.
+/// All backends of a registry. They solve the problems that they are shown, in place. They take turns in a random order
+/// that repeats with the seed, so that disturbances of the machine meet all of them.
 class SolverBench {
  public:
   /// `terms` says which of a problem's terms keep it clear of obstacles. Throws BadInput if a backend is
@@ -128,7 +128,7 @@ class SolverBench {
   solvers::BackendRegistry registry_;
   std::set<std::string> clearance_terms_;
   std::vector<Field> fields_;              // one for each structure
-  std::map<std::string, double> seconds_;  // used so far, but for the tight solves
+  std::map<std::string, double> seconds_;  // used so far, without the tight solves
   std::set<std::string> out_;              // of all but FindReference
   BenchResult result_;
 

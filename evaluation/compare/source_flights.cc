@@ -29,7 +29,7 @@ namespace {
 constexpr const char* kForest = "forest";
 constexpr const char* kHostile = "study hostile";  // as its files say
 
-// A listener takes time in a step: where the clock decides the flight it would be another one.
+// A listener takes time in a step. A flight that depends on the clock would change.
 SourceFlight Flown(SweepTrial trial, std::string command,
                    std::function<std::string(const TrialResult&)> judge) {
   if (trial.FliesAlone()) {
@@ -60,7 +60,7 @@ SourceFlight LandingOf(const std::string& scenario, const std::vector<std::strin
   return Flown(trial, trial.Replay(), judge);
 }
 
-// The words of a command line as a shell reads them: none where it asks for more than words.
+// The words of a command line as a shell reads them. Empty if it has more than words.
 std::vector<std::string> Words(const std::string& command) {
   wordexp_t expanded;
   std::vector<std::string> words;

@@ -12,11 +12,11 @@
 
 namespace touchdown::evaluation {
 
-/// A flight that can be flown with any registries: those it is given decide who hears of its solves.
+/// A flight that can be flown with any registries: the given registries decide who observes its solves.
 struct SourceFlight {
   std::string command;  ///< that flies it alone
-  /// Says in a sentence where it was another flight than the file holds; empty: it was the same, or nothing is
-  /// known. Throws what RunTrial or a replay throws.
+  /// Says in a sentence how the flight differed from the file's; empty: it was the same, or nothing is known. Throws
+  /// what RunTrial or a replay throws.
   std::function<std::string(const Registries& registries)> fly;
 };
 
@@ -31,9 +31,10 @@ struct FlightSource {
 FlightSource DrawnFlights(std::uint64_t seed, const std::vector<std::string>& overrides,
                           const Registries& registries);
 
-/// The flights of a file. The steps of a record are asked again one by one, from what the planner then knew. The trials
-/// of a sweep or a study are flown again from their seeds, but for those that crashed, hung or ended in an error. Throws
-/// BadInput with one sentence for another file, and for a flight whose plans take as long as the clock says.
+/// The flights of a file. The steps of a record are asked again one by one, with the planner's knowledge of that time.
+/// The trials of a sweep or a study are flown again from their seeds, without those that crashed, hung or ended in an
+/// error. Throws BadInput with one sentence for another file, and for a flight whose plans take as long as the clock
+/// says.
 FlightSource FlightsOf(const std::string& path, const std::vector<std::string>& overrides,
                        const Registries& registries);
 

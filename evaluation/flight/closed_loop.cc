@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One trial. In each step of 2 ms: sensors that are due, mission, replanning if due, tracking, then
-// physics, then the judge and the figures on the true state. The judge is given the state from
-// before the step together with the contacts found in it: the velocity before the impact.
+// One trial. Each step of 2 ms runs the sensors that are due, mission, replanning if due, tracking
+// and physics. Then follow the judge and the figures on the true state. The judge is given the
+// state from before the step together with the contacts found in it: the velocity before the
+// impact.
 #include "evaluation/flight/closed_loop.h"
 
 #include <chrono>
@@ -328,7 +329,7 @@ class Trial {
     if (record_ != nullptr) record_->events.push_back({t, kind, text});
   }
 
-  // The simulated sensors are right by construction: a measurement that the vehicle refuses is our bug.
+  // The simulated sensors are right by construction. A measurement that the vehicle refuses is a bug of this program.
   void CheckTaken() const {
     const int invalid = onboard_.taken()[static_cast<std::size_t>(control::Taken::kInvalid)];
     if (invalid > 0) throw std::logic_error(fmt::format("{} measurements were invalid", invalid));
@@ -382,7 +383,7 @@ class Trial {
     Note(world_.time(), "outcome", ToString(result_.outcome));
   }
 
-  // What was sensed of the prior, and for the record what of it is near.
+  // The observed part of the prior, and for the record its part near the flight.
   void ComparePrior() {
     memory_ = onboard_.TakeMemory();
     const planning::PriorCheck check = memory_->CheckPrior();
@@ -442,7 +443,7 @@ class Trial {
   std::optional<planning::PersistentMap> memory_;  ///< of a flight with a prior, at its end
 };
 
-// What the simulator or a backend refuses before the flight is a user error.
+// A refusal by the simulator or a backend before the flight is a user error.
 Trial SetUp(const Scenario& scenario, std::uint64_t seed, const Registries& registries,
             TrialRecord* record, TrialSamples* samples) {
   if (scenario.sensing == SensingKind::kRendered) RequireRenderedSensing();

@@ -13,14 +13,14 @@
 
 namespace touchdown::evaluation {
 
-/// Flies one trial from hover to its outcome: physics and tracking at 500 Hz, mission at 100 Hz,
-/// sensors and replanning at the scenario's rates. A pure function of scenario and seed but for the
-/// result's timing, unless planning.latency is `measured`. Any number may run in threads at a time.
+/// Flies one trial from hover to its outcome: physics and tracking at 500 Hz, mission at 100 Hz, sensors and replanning
+/// at the scenario's rates. A pure function of scenario and seed, except for the result's timing, unless
+/// planning.latency is `measured`. Any number may run in threads at a time.
 /// @param record filled if not null.
-/// @param map what was known at the end, filled if not null.
-/// @param samples filled with what every replanning step and depth image cost, and with what the pad
-/// filter was given, if not null.
-/// @param each_step called after every step, if there is one: what it throws that is no std::exception ends the flight.
+/// @param map the map at the end, filled if not null.
+/// @param samples filled, if not null, with the cost of every replanning step and depth image, and with the input of
+/// the pad filter.
+/// @param each_step called after every step, if set. If it throws something that is no std::exception, the flight ends.
 /// Physics that fails is an outcome, `unstable`.
 /// @throws BadInput if the scenario cannot be set up, std::runtime_error with the time of flight if
 /// a part of the program fails.

@@ -41,7 +41,7 @@ void Mark(const sim::Box& box, OccupancyMap* map) {
   const double half = 0.5 * map->resolution();
   const double c = std::cos(box.yaw);
   const double s = std::sin(box.yaw);
-  // The cell's own axes are settled by the box's bounds; the box's axes are left to test.
+  // The box's bounds have settled the cell's own axes. Only the box's axes are tested here.
   const double reach = half * (std::abs(c) + std::abs(s)) - kTouch;
   MarkCells(sim::BoundsOf(box), map, [&](const Eigen::Vector3d& centre) {
     const Eigen::Vector3d d = centre - box.center;

@@ -6,9 +6,9 @@
 
 namespace touchdown::evaluation {
 
-/// Fills the map's window as if all of it had been seen: every cell whose volume meets an obstacle
-/// is occupied, all else is observed free. Cells that only touch an obstacle's surface do not meet
-/// it, so that voxel columns on the map's lattice fill exactly their own cells.
+/// Fills the map's window as if all of it had been seen. Every cell whose volume meets an obstacle
+/// is occupied; all others are observed free. Cells that only touch an obstacle's surface do not
+/// meet it, so that voxel columns on the map's lattice fill exactly their own cells.
 void FillMap(const sim::ObstacleField& field, planning::OccupancyMap* map);
 
 }  // namespace touchdown::evaluation

@@ -21,7 +21,7 @@ void CompareRow(const CellState* before, const CellState* after, int count, cons
       continue;
     }
     MapRun run{first + i * CellIndex::UnitX(), 0, after[i]};
-    // A cell that had the state already may stand inside a run: fewer runs say the same.
+    // A run may include a cell that had the state already: fewer runs say the same.
     for (; i < count && after[i] == run.state; ++i) ++run.count;
     runs->push_back(run);
   }
@@ -29,7 +29,7 @@ void CompareRow(const CellState* before, const CellState* after, int count, cons
 
 constexpr int kWord = 64;  // cells
 
-// Of a row of `words` words, the 64 cells from `from` on; those that are not in it count as not set.
+// The 64 cells from `from` on of a row of `words` words. Cells outside of the row count as not set.
 std::uint64_t BitsFrom(const std::uint64_t* row, int words, int from) {
   const auto word = [&](int i) { return i >= 0 && i < words ? row[i] : 0; };
   const int first = from >= 0 ? from / kWord : -((kWord - 1 - from) / kWord);

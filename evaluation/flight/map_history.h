@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A rolling map written down as what changed in it from one replanning step to the next.
+// The changes of a rolling map from one replanning step to the next.
 #pragma once
 
 #include <cstdint>
@@ -19,8 +19,8 @@ struct MapRun {
   planning::CellState state = planning::CellState::kUnknown;
 };
 
-/// What changed since the step before. Cells that the window left are forgotten; those it reached
-/// are unknown unless a run says otherwise.
+/// The changes since the step before. Cells that the window left are forgotten. New cells of the
+/// window are unknown unless a run says otherwise.
 struct MapChange {
   planning::CellIndex origin = planning::CellIndex::Zero();  ///< lowest cell of the window
   std::vector<MapRun> runs;

@@ -13,7 +13,7 @@
 namespace touchdown::evaluation {
 namespace {
 
-// With an estimated own state; docs/own_state.md says what they are read off.
+// With an estimated own state; docs/own_state.md gives their source.
 constexpr double kOwnPositionSigma = 0.01;  // what the estimate jumps by between images [m]
 constexpr double kOwnAttitudeSigma = 0.01;  // [rad]
 constexpr double kFrameWander = 1e-3;       // 0.03 m/s that last for about a second [m^2/s]

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From a scenario's keys to the part that would fly.
+// From a scenario's keys to the onboard software.
 #pragma once
 
 #include <memory>
@@ -18,9 +18,9 @@ planning::OccupancyMapOptions MapOptions(const Scenario& scenario,
                                          const estimation::VehicleModel& model,
                                          const Registries& registries);
 
-/// The scenario's vehicle's own software. It knows only estimates; an oracle of the pad's future, `truth`, is the one
-/// exception, on request of the scenario. @throws std::invalid_argument naming the file if map.prior cannot be used,
-/// and if the backend cannot do what the scenario asks.
+/// The onboard software of the scenario's vehicle. It knows only estimates. The one exception, on request of the
+/// scenario, is an oracle of the pad's future, `truth`. @throws std::invalid_argument naming the file if map.prior
+/// cannot be used, and if the backend cannot do what the scenario asks.
 control::Onboard MakeOnboard(const Scenario& scenario, const estimation::VehicleModel& model,
                              std::shared_ptr<const sim::PadCourse> truth,
                              const Registries& registries);

@@ -14,7 +14,7 @@ namespace touchdown::evaluation {
 /// The sensors of the scenario's keys under own.
 sim::OwnSensorRigConfig OwnSensorsOf(const Scenario& scenario);
 
-/// What tells the vehicle of itself, as the scenario's own_state says: the truth, or sensors.
+/// The source of the vehicle's own state, as the scenario's own_state says: the truth, or sensors.
 class OwnSense {
  public:
   /// `seed` feeds the sensors' own streams. @throws std::invalid_argument naming key, value and range.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a flight's pad filter was given, and what it should have said: a filter can be run on it again.
+// The input of a flight's pad filter and the true pad. A filter can be run on it again.
 #pragma once
 
 #include <vector>

@@ -18,7 +18,7 @@
 
 namespace touchdown::evaluation {
 
-/// What the vehicle gets: an image, or else what would have been found in it.
+/// What the vehicle gets: an image, or the tags that would be found in it.
 struct PadSeen {
   std::unique_ptr<estimation::PadImage> image;
   estimation::PadSighting sighting;
@@ -55,7 +55,7 @@ class PadSensor {
   sim::FrameDelivery<PadSeen> delivery_;
 };
 
-/// The downward camera of the scenario, and what it would see.
+/// The downward camera of the scenario, and its view.
 sim::PadCameraConfig PadCameraOf(const Scenario& scenario);
 sim::VisualScene VisualSceneOf(const Scenario& scenario, const sim::WorldConfig& world);
 

@@ -17,14 +17,13 @@
 
 namespace touchdown::evaluation {
 
-/// What one depth image cost, from the simulated camera to the map.
+/// The cost of one depth image, from the simulated camera to the map.
 struct FrameTimes {
   planning::StageTimes::Span sense{"sense"}, map{"map"};
 };
 
-/// The vehicle's sensors in a simulated world: what tells it of itself, GPS of the pad, downward camera, depth camera.
-/// What they measure goes to an Onboard. The cameras see from where the vehicle truly is. Belongs to the thread that
-/// made it.
+/// The vehicle's sensors in a simulated world: own state, GPS of the pad, downward camera, depth camera. Their
+/// measurements go to an Onboard. The cameras see from the vehicle's true pose. Belongs to the thread that made it.
 class Perception {
  public:
   /// `world` only gives the configuration. Every sensor has its own stream of `seed`.
@@ -34,7 +33,7 @@ class Perception {
   /// The time before the flight, in which it hovers at its start.
   void Hover(const sim::World& world, control::Onboard* onboard);
 
-  /// Takes the images that are due at the world's time and hands on the measurements that arrive at it. Call once per
+  /// Takes the images that are due at the world's time and passes on the measurements that arrive then. Call once per
   /// physics step.
   void Sense(const sim::World& world, control::Onboard* onboard);
 

@@ -38,7 +38,7 @@ struct RecordEvent {
   std::string text;
 };
 
-/// What came out of a replanning step; all of it repeats bit by bit.
+/// The result of a replanning step; all of it repeats bit by bit.
 struct ReplanOutcome {
   planning::ReplanStatus status = planning::ReplanStatus::kHolding;
   planning::ReplanReason reason = planning::ReplanReason::kNone;
@@ -56,11 +56,11 @@ struct ReplanOutcome {
 };
 ReplanOutcome OutcomeOf(const planning::ReplanResult& result);
 
-/// All that a record holds is the same in both. Numbers that are not finite count as equal, and so
-/// do the zeros: a file does not tell them apart.
+/// Everything that a record holds is equal. Numbers that are not finite count as equal, and so do
+/// zeros of both signs: a file does not distinguish them.
 bool Same(const ReplanOutcome& a, const ReplanOutcome& b);
 
-/// One replanning step: what was asked and what came out.
+/// One replanning step: its input and its result.
 struct RecordPlan {
   control::ReplanRequest request;
   planning::ReplannerState before;  ///< what the replanner remembered

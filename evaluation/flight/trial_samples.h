@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a flight cost, sample by sample, the raw material of a profile; and what its pad filter was given.
+// The cost of a flight, sample by sample, for a profile; and the input of its pad filter.
 #pragma once
 
 #include <vector>

@@ -15,7 +15,7 @@
 
 namespace touchdown::evaluation {
 
-/// How well a vehicle flies a metre and stays there, the tracking law and all else as in any flight, in still air.
+/// How well a vehicle flies a metre and stays there, in still air. Tracking law and all else are as in any flight.
 struct HoverCheck {
   bool held = false;
   std::string outcome;         ///< of the flight
@@ -24,7 +24,7 @@ struct HoverCheck {
   double greatest_tilt = 0.0;  ///< [rad]
 };
 
-/// All that is found in a vehicle's file.
+/// All findings in a vehicle's file.
 struct VehicleCheck {
   std::string file;
   std::string airframe_file;  ///< beside it; empty: there is none
@@ -36,8 +36,9 @@ struct VehicleCheck {
   bool passed() const { return findings.faults().empty() && hover && hover->held; }
 };
 
-/// Reads the MJCF file as `vehicle: FILE` would, with the airframe file beside it and overrides KEY=VALUE; without faults it hovers
-/// the vehicle for five seconds. @throws BadInput for overrides and airframe files that LoadScenario refuses.
+/// Reads the MJCF file as `vehicle: FILE` does, with the airframe file beside it and overrides KEY=VALUE. If there are
+/// no faults, it hovers the vehicle for five seconds.
+/// @throws BadInput for overrides and airframe files that LoadScenario refuses.
 VehicleCheck CheckVehicle(const std::string& file, const std::vector<std::string>& overrides,
                           const Registries& registries);
 

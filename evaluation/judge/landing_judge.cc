@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The success rule of the evaluation as an incremental observer of the true state: first contact
-// of a foot with the pad is judged on relative velocity and attitude, then one second of rest,
-// upright and disarmed, makes a landing. Everything else is exactly one failure class; an obstacle
-// that is touched before the landing is over is a collision, whatever the feet stand on.
+// The success rule of the evaluation as an incremental observer of the true state. First contact of
+// a foot with the pad is judged on relative velocity and attitude. Then one second of rest, upright
+// and disarmed, makes a landing. Everything else is exactly one failure class. An obstacle that is
+// touched before the landing is over is a collision, whatever the feet stand on.
 #include "evaluation/judge/landing_judge.h"
 
 #include <algorithm>

@@ -43,7 +43,7 @@ std::optional<Outcome> OutcomeNamed(std::string_view name);
 const char* Explain(Outcome outcome);
 /// The task is done.
 bool IsSuccess(Outcome outcome);
-/// It says nothing of the flight: the program or its process failed. Such a trial may be flown again.
+/// It tells nothing about the flight: the program or its process failed. Such a trial may be flown again.
 bool IsLost(Outcome outcome);
 
 /// The success rule, fixed before any run.
@@ -96,13 +96,13 @@ struct Touchdown {
   double tilt_over_equilibrium = 0.0;  ///< [rad]
 };
 
-/// What of a touchdown the rule does not allow, with the limits, in words; empty: nothing.
+/// Which limits of the rule a touchdown breaks, in words; empty: none.
 std::string Broken(const LandingRule& rule, const Touchdown& touchdown);
 
 /// Velocity of the deck's material point below p_WB, in W [m/s].
 Eigen::Vector3d DeckPointVelocity(const estimation::PadState& pad, const Eigen::Vector3d& p_WB);
 
-/// To stay at the target, without a break.
+/// A task to stay at the target, without a break.
 struct HoldTask {
   Outcome done = Outcome::kArrived;  ///< or kFollowed
   double distance = 0.0;  ///< so near is at the target [m]; the caller that samples decides

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How early a landing is possible at all: what a trial's time to land is measured against. The proof
-// is in docs/t_star.md and landing_time_lower.cc.
+// How early a landing is possible at all. A trial's time to land is compared with this. The proof is in docs/t_star.md
+// and landing_time_lower.cc.
 #pragma once
 
 #include <numbers>
@@ -14,8 +14,9 @@
 
 namespace touchdown::evaluation {
 
-/// A point that hovers at first, flies within limits on the norms of velocity and acceleration, and
-/// shall touch a pad whose future is known. There are no obstacles, no wind and no ground.
+/// The task of a point that hovers at first and flies within limits on the norms of velocity and
+/// acceleration. It must touch a pad whose future is known. There are no obstacles, no wind and no
+/// ground.
 struct LandingTimeTask {
   Eigen::Vector3d p_WB = Eigen::Vector3d::Zero();  ///< start, at rest [m]
   double speed = 3.0;                              ///< limit [m/s], > 0
@@ -44,16 +45,16 @@ struct LandingFlight {
   std::vector<Eigen::Vector3d> control_points;  ///< [m]
 };
 
-/// T*: no trajectory of the task ends in contact before this [s], at most the horizon. Contact is
-/// what it can be at most: any attitude, any point of the feet on any point of the deck. `pad` is
-/// asked from t = 0, the start, on. Some 0.5 ms.
+/// T*: no trajectory of the task ends in contact before this [s], at most the horizon. Contact has
+/// the widest meaning: any attitude, any point of the feet on any point of the deck. `pad` is asked
+/// from t = 0, the start, on. Takes some 0.5 ms.
 /// @throws std::invalid_argument if a limit or the horizon is not > 0.
 double LandingTimeLowerBound(const LandingTimeTask& task, const estimation::PadPrediction& pad);
 
-/// A flight that was found and checked: T* is not far below its time. It comes from above the deck's
-/// plane and ends level with a foot on the deck at some heading, whatever errors of the pad the task
-/// allows. Empty if none was found within the horizon, as where the start is lower than
-/// that end. `lower_bound`: where to begin to look. Tens of milliseconds.
+/// A flight that was found and checked: T* is not far below its time. It comes from above the deck's plane. It ends
+/// level with a foot on the deck at some heading, for all errors of the pad that the task allows. Empty if none was
+/// found within the horizon, for example where the start is lower than that end. `lower_bound`: where the search
+/// starts. Takes tens of milliseconds.
 std::optional<LandingFlight> LandingTimeUpperBound(const LandingTimeTask& task,
                                                    const estimation::PadPrediction& pad,
                                                    double lower_bound);

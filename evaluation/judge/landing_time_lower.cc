@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The certified lower bound on the time to land (docs/t_star.md). Along a unit vector n the motion
-// is that of a one-dimensional double integrator with |v_n| <= vmax and |a_n| <= amax, whose farthest
-// point at time T is reached by the well-known bang-coast-bang profile, in closed form. An interval
-// of arrival times is excluded if along one n that point is short of the end set, which is widened by
-// the most that the pad can move within the interval. Intervals are excluded one after the other from
-// the start on, wide ones first, so that nothing has to be monotone in T.
+// The certified lower bound on the time to land (docs/t_star.md). Along a unit vector n the motion is that of a
+// one-dimensional double integrator with |v_n| <= vmax and |a_n| <= amax. Its farthest point at time T is reached by
+// the bang-coast-bang profile, in closed form. The end set is widened by the most that the pad can move within an
+// interval of arrival times. The interval is excluded if along one n that point is short of the end set. Intervals are
+// excluded one after the other from the start on, wide ones first, so nothing has to be monotone in T.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -131,7 +130,7 @@ class Exclusion {
   const estimation::PadPrediction& pad_;
   std::vector<Eigen::Vector3d> directions_;
   Eigen::Vector3d best_;
-  // Of the interval: the pad in its middle, and what every T in it is bounded by.
+  // For the interval: the pad in its middle, and bounds for every T in it.
   estimation::PadState at_;
   Eigen::Vector2d x_WP_;  // its x axis
   double latest_ = 0.0;

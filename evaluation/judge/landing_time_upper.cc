@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A contact that is possible, and how early (docs/t_star.md). The acceleration is constant on each of
-// kSegments equal parts of [0, T]: the position is a uniform quadratic B-spline, and limits on the
-// norms of velocity (linear between knots) and acceleration hold everywhere if they hold at the
-// knots. At a fixed T both are convex, and so is the end set, which is of a vehicle as it flies: level,
-// from above, a foot on the deck (that of the lower bound is larger: there, what is necessary counts).
-// What is missed of it is minimised under these limits by the backend `banded`, from hovering, and the
-// answer is checked by itself. T is found by bisection. Any T found is a valid upper bound, whatever
+// A contact that is possible, and how early (docs/t_star.md). The acceleration is constant on each of kSegments equal
+// parts of [0, T], so the position is a uniform quadratic B-spline. Velocity is linear between knots. So limits on the
+// norms of velocity and acceleration hold everywhere if they hold at the knots. At a fixed T both are convex. The end
+// set is convex too: the vehicle is level, comes from above and has a foot on the deck. (The lower bound has a larger
+// end set of necessary conditions.) The backend `banded` minimises the distance to the end set under these limits, from
+// hovering. The answer is checked independently. T is found by bisection. Any T found is a valid upper bound, whatever
 // the solver does.
 #include <algorithm>
 #include <array>
@@ -81,7 +80,7 @@ struct DifferenceNorm {
   double Scale(double h) const { return 1.0 / (limit * (kOrder == 1 ? h * h : h * h * h * h)); }
 };
 
-/// What contact asks of a level vehicle, whatever errors of the pad the task allows.
+/// Conditions of contact for a level vehicle, for all errors of the pad that the task allows.
 struct EndSet {
   EndSet() = default;
   EndSet(const LandingTimeTask& task, const estimation::PadState& pad_then)
@@ -151,8 +150,8 @@ struct EndHeight : EndSet {
   }
 };
 
-/// They come from above: no control point but the last is lower than the end, so that nothing of
-/// the flight is, and it ends sinking.
+/// The flight comes from above: no control point but the last is lower than the end. So no part of
+/// the flight is lower, and it ends sinking.
 struct FromAbove : EndSet {
   static constexpr int kBlockSize = 3, kWindow = 1, kOutputs = 1;
   static constexpr bool kUsesInterval = false, kLinearInBlocks = true;
@@ -205,7 +204,7 @@ class Attainable {
     backend_->Prepare(view_);
     y_ = task.p_WB.replicate(kPoints - 2, 1);
     stop_.max_iterations = kMostIterations;
-    stop_.confirm = false;  // what is found is checked here
+    stop_.confirm = false;  // the found flight is checked here
     stop_.callback = [](const solvers::StopQuery& at) {
       return at.cost <= kMet && at.max_violation <= 0.0;
     };

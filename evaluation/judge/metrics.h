@@ -24,8 +24,8 @@ class Metrics {
   void Sample(double t, const estimation::VehicleState& vehicle, const estimation::PadState& pad);
 
   /// The filter's estimate against the truth, after a measurement while it is converged.
-  /// @param own_error the vehicle's estimate of its own position less the truth [m]: so far the frame
-  /// of the filter is off. The positions are compared as seen from the vehicle.
+  /// @param own_error the vehicle's estimate of its own position less the truth [m]. The filter's frame is off by this.
+  /// The positions are compared as seen from the vehicle.
   void Estimate(const estimation::PadState& estimate, const estimation::PadState& truth,
                 const Eigen::Vector3d& own_error);
 

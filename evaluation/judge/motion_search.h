@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A search in position and speed: ways that a vehicle can fly from the speed it has, which a path through
-// free cells does not know of.
+// A search in position and speed. It finds ways that a vehicle can fly from the speed it has; a path through free cells
+// does not consider that speed.
 #pragma once
 
 #include <optional>
@@ -27,8 +27,8 @@ struct MotionSearchOptions {
   int max_expansions = 20000;
 };
 
-/// A way of pieces of constant acceleration that stays in free cells and below the limits, and ends by a
-/// quintic in the end's state at its arrival. Greedy: not the earliest. Empty: none was found. Allocates.
+/// A way of pieces of constant acceleration that stays in free cells and below the limits. It ends with a quintic in
+/// the end's state at its arrival. Greedy: not the earliest. Empty: none was found. Allocates.
 std::optional<TimedWay> SearchMotion(const planning::SplineState& start,
                                      const estimation::PadPrediction& pad,
                                      const planning::EndpointTarget& target,

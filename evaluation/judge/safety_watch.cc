@@ -51,7 +51,7 @@ int CountFreeInside(const planning::OccupancyMap& map, const sim::Obstacle& obst
 
 void SafetyWatch::Step(const planning::ReplanResult& plan, const planning::Margins& margins,
                        bool late) {
-  // What is flown on keeps to the margins that it was proven with.
+  // A trajectory that is flown on keeps the margins with which it was proven.
   if (plan.committed) margins_ = margins;
   figures_.margin_max_m = std::max(figures_.margin_max_m, margins.Sum());
   figures_.margin_mean_m += (margins.Sum() - figures_.margin_mean_m) / ++steps_;
@@ -65,7 +65,7 @@ void SafetyWatch::Step(const planning::ReplanResult& plan, const planning::Margi
   if (start.unknown) ++figures_.escaping_unknown_steps;
   if (!escapes && narrow) ++figures_.narrow_steps;
   if (plan.map_error) ++figures_.map_errors;
-  // A stop that was wanted is a curve to rest, without another one that begins later.
+  // An intended stop is a curve to rest, without another one that begins later.
   const bool stops = plan.status == planning::ReplanStatus::kBraking && !plan.committed &&
                      std::isfinite(plan.t_stop);
   if (stops && !stopping_) ++figures_.stops_flown;

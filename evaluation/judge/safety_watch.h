@@ -12,7 +12,7 @@
 
 namespace touchdown::evaluation {
 
-/// What became of the safety rule in a flight, until first contact (docs/safety.md).
+/// Figures of the safety rule in a flight, until first contact (docs/safety.md).
 struct SafetyFigures {
   int uncertified_steps = 0;  ///< after which something flies that is not part of a proven pair
   int escaping_steps =
@@ -35,7 +35,7 @@ struct SafetyFigures {
   std::int64_t falsely_free_cells = 0;  ///< of those, cells whose centre is inside an obstacle
 };
 
-/// Collects them. The truth is the obstacles'; what the vehicle knows is in the frame of its estimate.
+/// Collects the figures. The truth is that of the obstacles. The vehicle's knowledge is in the frame of its estimate.
 class SafetyWatch {
  public:
   explicit SafetyWatch(const sim::ObstacleField& obstacles) : obstacles_(obstacles) {}
@@ -43,7 +43,7 @@ class SafetyWatch {
   /// `late`: a new pair took over later than it was proven for, and the reference jumped.
   void Step(const planning::ReplanResult& plan, const planning::Margins& margins,
             bool late = false);
-  /// Where the vehicle takes itself to be, where it is, and where it is to be.
+  /// Estimated, true and reference position.
   void Tracked(const Eigen::Vector3d& p_WB, const Eigen::Vector3d& p_true_WB,
                const Eigen::Vector3d& p_reference_W);
   /// `drift_W` is the vehicle's estimate of its position less the truth [m].

@@ -5,11 +5,12 @@
 
 namespace touchdown::evaluation {
 
-/// Tells when a flight stands: for a while it stayed in one place and no new plan was made, although a
-/// depth image came. A flight that waits for an image may still see a way, so it does not stand.
+/// Detects that a flight stands: for a while it stayed in one place and made no new plan, although a depth image came.
+/// A flight that waits for an image may still see a way, so it does not stand.
 class StandWatch {
  public:
-  /// Stays within this of one place [m]: less is drift in a gust, not a way that is flown.
+  /// A flight within this distance stays in one place [m]. Less is drift in a gust, not a flown
+  /// way.
   static constexpr double kPlace = 0.5;
 
   /// `limit` in [s]; 0: no flight stands.

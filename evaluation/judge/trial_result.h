@@ -15,8 +15,8 @@
 
 namespace touchdown::evaluation {
 
-/// How well the pad filter did, against the truth: right after each of its measurements while it
-/// counts as converged, until first contact.
+/// Errors of the pad filter against the truth, right after each of its measurements while it counts
+/// as converged, until first contact.
 struct EstimatorQuality {
   double rmse_position_m = 0.0;     ///< horizontal, relative to the vehicle (estimate to estimate)
   double rmse_velocity_mps = 0.0;   ///< horizontal, in W
@@ -24,8 +24,8 @@ struct EstimatorQuality {
   int samples = 0;
 };
 
-/// How far the vehicle's estimate of its own state was off, in flight until first contact, every
-/// 20 ms: lengths of the error of position and velocity, angle of that of the attitude.
+/// Error of the vehicle's estimate of its own state, in flight until first contact, every 20 ms.
+/// Position and velocity errors are lengths; the attitude error is an angle.
 struct OwnStateQuality {
   double rmse_position_m = 0.0;
   double max_position_m = 0.0;
@@ -42,7 +42,7 @@ struct Following {
   double relative_speed_mps = 0.0;  ///< mean norm of the velocity relative to the pad
 };
 
-/// What the flight found of its map.prior (docs/worlds.md): numbers of cells.
+/// What the flight learned about its map.prior (docs/worlds.md): numbers of cells.
 struct PriorFigures {
   std::int64_t occupied = 0;   ///< that the prior holds occupied
   std::int64_t looked_at = 0;  ///< of these, those that were observed
@@ -67,13 +67,13 @@ struct TrialTiming {
   int deadline_misses = 0;  ///< replans slower than the latency they were flown with
 };
 
-/// What one trial came to: a pure function of (scenario, seed), but for `timing`.
+/// The result of one trial: a pure function of (scenario, seed), except for `timing`.
 struct TrialResult {
   std::uint64_t seed = 0;
   Outcome outcome = Outcome::kError;
   std::string detail;  ///< what went wrong in words; empty when landed
-  /// What ended it: the last thing touched but by a foot on the deck ("obstacle 3", "hull-deck"), of a
-  /// flight that stood the last reason for no new plan, else the mode. Otherwise empty.
+  /// Cause of the end. For a contact: the last thing touched, except a foot on the deck ("obstacle 3", "hull-deck").
+  /// For a flight that stood still: the last reason for no new plan, else the mode. Otherwise empty.
   std::string cause;
   std::optional<Touchdown> touchdown;        ///< first contact of a foot with the pad
   std::optional<double> mean_abs_error_x_m;  ///< last 5 s before first contact, world axes
@@ -90,8 +90,9 @@ struct TrialResult {
   std::optional<EstimatorQuality> estimator;
   std::optional<OwnStateQuality> own_state;  ///< where it is estimated
   std::optional<Following> following;        ///< of the task follow, where it lasted 10 s
-  /// Of trials that are to land: bounds on the earliest contact that is possible at all
-  /// (evaluation/judge/landing_time.h), the lower one T*, the upper one empty if none was found.
+  /// Of trials that are to land: bounds on the earliest possible contact
+  /// (evaluation/judge/landing_time.h). The lower one is T*; the upper one is empty if none was
+  /// found.
   std::optional<double> t_star_s;
   std::optional<double> t_star_upper_s;
   /// max_speed_mps and max_acceleration_mps2 are within the scenario's limits, as T* supposes.
@@ -101,7 +102,7 @@ struct TrialResult {
   TrialTiming timing;
 
   bool landed() const { return outcome == Outcome::kLanded; }
-  /// It came to what the scenario's task asks for.
+  /// It fulfilled the scenario's task.
   bool succeeded() const { return IsSuccess(outcome); }
   /// Time to land over T*, empty unless landed within the limits.
   std::optional<double> time_ratio() const {

@@ -8,8 +8,8 @@
 
 namespace touchdown::evaluation {
 
-/// Takes every cell of the window as observed free that no obstacle reaches into, but for those that block: what
-/// a flight would be if its camera saw everything. For studies of what looking costs. `drift_W` is the error
+/// Marks all cells of the window as observed free, except occupied cells and those that an obstacle may reach into.
+/// This is the map of a flight whose camera sees everything. For studies of the cost of looking. `drift_W` is the error
 /// of the frame that the map lives in [m].
 void ObserveTruth(const sim::ObstacleField& obstacles, const Eigen::Vector3d& drift_W,
                   planning::OccupancyMap* map);

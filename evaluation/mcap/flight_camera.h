@@ -17,14 +17,14 @@ namespace touchdown::evaluation {
 Eigen::Isometry3d DownCameraPose(const Scenario& scenario);
 Eigen::Isometry3d DepthCameraPose(const Scenario& scenario);
 
-/// What the vehicle's cameras see, rendered again: the noise of images in flight was another one. Belongs to the thread that
-/// made it; times must not go back.
+/// What the vehicle's cameras see, rendered again; the noise of the images in flight was different. Belongs to the
+/// thread that made it; times must not go back.
 class FlightCameras {
  public:
   /// @throws as sim::PadCamera and sim::RenderedDepthCamera do.
   FlightCameras(const Scenario& scenario, const sim::VisualScene& scene);
 
-  /// Images a second: the camera's rate, or less where its images are so large that a file would be, too.
+  /// Images a second: the camera's rate, or less where large images would make the file too large.
   double down_rate() const { return down_rate_; }
   double depth_rate() const { return depth_rate_; }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What each topic holds, and when: docs/mcap.md. A message is made when its time has come, so that memory holds the record, and
-// of the file no more than a part.
+// What each topic holds, and when: docs/mcap.md. A message is made at its time. So memory holds the record, but only a
+// part of the file.
 #include "evaluation/mcap/flight_export.h"
 
 #include <algorithm>
@@ -247,7 +247,7 @@ class FlightExport {
       });
     };
     cloud("/points/obstacles", obstacles, kSpacing, "Surfaces of the obstacles as they truly are");
-    // Foxglove leaves a cloud where its frame was at the message's time: these are told again as they move.
+    // Foxglove leaves a cloud where its frame was at the message's time. So moving clouds are sent again.
     const auto moving_cloud = [&](const std::string& topic, const NamedSolids& thing,
                                   double spacing, const std::string& about) {
       const std::uint16_t channel = Topic(topic, kSchemaPointCloud, about);

@@ -8,17 +8,17 @@
 
 namespace touchdown::evaluation {
 
-/// Makes sure before the work that WriteMcap will be able to write there: the name, which must end in .mcap, the place, the
+/// Checks before the work that WriteMcap will be able to write: the name (it must end in .mcap), the place, and the
 /// descriptions of the messages. @throws BadInput; std::runtime_error naming a description that the installation lacks
 void CheckMcap(const std::string& option, const std::string& path);
 
 using ExportProgress = std::function<void(int done, int all)>;
 
-/// Writes a recorded flight as an MCAP file for Foxglove and Rerun (docs/mcap.md). The same record gives the same bytes. The file
-/// appears whole or not at all. `progress`, where it is not empty, is told how many of the messages are written; what it
-/// throws ends the work.
-/// @throws BadInput as ReadRecord, and where images are to be rendered that cannot be; std::runtime_error
-/// naming a file that cannot be written
+/// Writes a recorded flight as an MCAP file for Foxglove and Rerun (docs/mcap.md). The same record gives the same
+/// bytes. The file appears whole or not at all. `progress`, if not empty, gets the number of written messages. If it
+/// throws, the work ends.
+/// @throws BadInput as ReadRecord, and if required images cannot be rendered; std::runtime_error naming a file that
+/// cannot be written
 void WriteMcap(const std::string& record_path, const std::string& mcap_path,
                const Registries& registries, const ExportProgress& progress);
 

@@ -60,7 +60,7 @@ FlightFigures::FlightFigures(const RecordedFlight& flight, const FlightTrack& tr
 }
 
 const TrackBelief* FlightFigures::PadBelief(int sample) const {
-  if (goal_) return nullptr;  // what stands in its place is the goal, which is known
+  if (goal_) return nullptr;  // the goal takes its place, and it is known
   const double t = TimeOf(sample);
   const std::vector<TrackBelief>& beliefs = track_.beliefs();
   const auto belief =

@@ -27,7 +27,7 @@ class FlightFigures {
     return track_.samples()[static_cast<std::size_t>(sample)];
   }
 
-  /// What was believed of the pad then; nullptr before anything was, and in the task go_to.
+  /// The estimated pad then; nullptr before there was an estimate, and in the task go_to.
   const TrackBelief* PadBelief(int sample) const;
 
   /// Where the flight leads in the task go_to.

@@ -41,8 +41,8 @@ NamedSolids GroundSolids(const std::vector<NamedSolids>& world,
                          const std::vector<Eigen::Vector3d>& places_W);
 
 std::vector<SceneEntity> EntitiesOf(const std::vector<NamedSolids>& things);
-/// Points all over their surfaces, nearer to each other than `spacing` [m], or farther where there would be more
-/// than `most`.
+/// Points all over their surfaces, closer to each other than `spacing` [m]. The distance is larger where there would be
+/// more than `most` points.
 CloudPoints PointsOf(const std::vector<NamedSolids>& things, double spacing, std::size_t most);
 
 }  // namespace touchdown::evaluation

@@ -10,9 +10,9 @@
 
 namespace touchdown::evaluation {
 
-/// Writes an MCAP file, version 0 of the format, to a stream: chunks without compression, with message indices, a summary and
-/// all of the format's checksums. Nothing but what it is given is in the file: no time of day, no name of a machine. A stream
-/// that fails is a std::runtime_error of the call that finds it.
+/// Writes an MCAP file, version 0 of the format, to a stream. It has uncompressed chunks, message indices, a summary
+/// and all of the format's checksums. The file holds only what the writer is given: no time of day, no name of a
+/// machine. If the stream fails, the call that notices it throws std::runtime_error.
 class McapWriter {
  public:
   using Words = std::map<std::string, std::string>;

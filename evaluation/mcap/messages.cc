@@ -23,7 +23,7 @@ std::string PoseInFrame(double t, const std::string& frame, const Eigen::Isometr
   return PosesInFrame(t, frame, {pose});
 }
 
-// The two differ in that one may hold several: their fields have the same numbers.
+// The only difference is that one may hold several. Their fields have the same numbers.
 std::string PosesInFrame(double t, const std::string& frame,
                          const std::vector<Eigen::Isometry3d>& poses) {
   std::string bytes;

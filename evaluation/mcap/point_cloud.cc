@@ -58,7 +58,7 @@ void AddSurface(const Solid& solid, double spacing, CloudPoints* points) {
     const auto corner = [&](int i) -> Eigen::Vector3d {
       return solid.pose * surface.corners[static_cast<std::size_t>(triangle[i])];
     };
-    // Rows from the longest side to the corner across it: what is long and thin has one row of points, not many.
+    // Rows from the longest side to the corner across it, so that a long and thin triangle has one row of points.
     int apex = 0;
     double longest = -1.0;
     for (int i = 0; i < 3; ++i) {

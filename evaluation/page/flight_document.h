@@ -10,8 +10,8 @@
 
 namespace touchdown::evaluation {
 
-/// A recorded flight as one document, which a page can show without the record (docs/replay.md). `name` is the record as
-/// its readers know it. The landing planner's steps are asked again; `done(n, all)` is told after each.
+/// A recorded flight as one document, which a page can show without the record (docs/replay.md). `name` is the record's
+/// name for readers. The landing planner's steps are asked again; `done(n, all)` is called after each.
 /// @throws BadInput as ReadRecord and Replay.
 nlohmann::ordered_json FlightDocument(const std::string& record, const std::string& name,
                                       const Registries& registries,

@@ -36,7 +36,7 @@ Json PathsOf(const std::vector<std::vector<Eigen::Vector3d>>& paths) {
   return json;
 }
 
-// What stands in the record of every planner.
+// The data that every planner's record has.
 Json RecordedStep(const RecordPlan& plan) {
   const planning::ReplanInput& input = plan.request.input;
   const ReplanOutcome& result = plan.result;
@@ -79,7 +79,7 @@ const planning::AttemptLog* Winner(const SolvedStep& solved) {
   return won == attempts.rend() ? nullptr : &*won;
 }
 
-// Of every attempt and way around, where its last solve led, but for the answer.
+// The curve of the last solve of every attempt and way around, without the answer.
 Json LostWays(const SolvedStep& solved, const planning::AttemptLog* winner) {
   Json lost = Json::array();
   for (const planning::AttemptLog& attempt : solved.log.attempts) {

@@ -131,7 +131,7 @@ Json PadDocument(const Scenario& scenario) {
       {"thickness", pad.deck_thickness},
       {"body", {pad.body_half_length, pad.body_half_width}},
       {"ground_gap", pad.ground_gap},
-      // Returns from the deck, grown by so many sigmas of its place, are no obstacles; past `sure` they are in doubt.
+      // Returns from the deck, grown by so many sigmas of its place, are no obstacles. Beyond `sure` they are doubtful.
       {"sigmas", planning::PadOutline::kSigmas},
       {"sure", planning::PadOutline::kSure},
       {"plate_from", Rounded(sim::PlateEdge(scenario.camera.occlusion), kMilli)},

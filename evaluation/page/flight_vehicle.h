@@ -14,7 +14,8 @@ nlohmann::ordered_json VehicleDocument(const Scenario& scenario);
 /// Where a flight of the task go_to leads: `p` at t = 0 and `v`, in W; null of other tasks.
 nlohmann::ordered_json GoalDocument(const Scenario& scenario);
 
-/// The pad: the deck, the body below it, from where on a plate covers the printed sheet, and the sheet as runs of white and black texels, row by row from the top.
+/// The pad: the deck, the body below it, the edge of a plate that covers the printed sheet, and the sheet. The sheet is
+/// given as runs of white and black texels, row by row from the top.
 nlohmann::ordered_json PadDocument(const Scenario& scenario);
 
 }  // namespace touchdown::evaluation

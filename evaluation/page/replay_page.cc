@@ -41,7 +41,7 @@ std::string PackedFlight(const ShownRecord& record, const Registries& registries
         if (progress) progress(record.name, done, all);
       });
   document["kept"] = record.kept;
-  // Names come from files: what is no UTF-8 is shown as such.
+  // Names come from files. Bytes that are no UTF-8 are shown as such.
   return PackText(document.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
 

@@ -31,7 +31,7 @@ Profile Begin(const Scenario& scenario, const ProfileOptions& options) {
   return profile;
 }
 
-// Runs with a log listening, for the CPU time of the stages: the given one, if spans are to be kept.
+// Runs with a log, for the CPU time of the stages. It is the given log if spans are to be kept.
 template <typename Run>
 void Listen(const ProfileOptions& options, planning::SpanLog* log, const Run& run) {
   planning::SpanLog unkept;
@@ -64,7 +64,7 @@ class StageColumn {
   std::vector<double> cpu_ms_, wall_ms_, allocations_;
 };
 
-// What is left of the total beside its stages.
+// The rest of the total beside its stages.
 Span Other(const planning::StageTimes& times) {
   Span other = times.total;
   for (const Span* stage : times.Stages()) {
@@ -72,7 +72,7 @@ Span Other(const planning::StageTimes& times) {
     other.cpu -= stage->cpu;
     other.allocations -= stage->allocations;
   }
-  // Readings of two clocks: a step without work of its own may come out a little below zero.
+  // The difference of two clocks: a step without work of its own may be a little below zero.
   other.wall = std::max(0.0, other.wall);
   other.cpu = std::max(0.0, other.cpu);
   return other;
@@ -81,7 +81,7 @@ Span Other(const planning::StageTimes& times) {
 std::vector<ProfileSummary::SlowStep> SlowestSteps(const Profile& profile) {
   constexpr std::size_t kMost = 3;
   using SlowStep = ProfileSummary::SlowStep;
-  // Of a replay every run is a pass over the same steps; flights have their own.
+  // Every run of a replay is a pass over the same steps. Flights have their own steps.
   std::map<std::pair<std::uint64_t, int>, std::vector<double>> times;
   std::map<std::pair<std::uint64_t, int>, int> solves;
   for (const ProfileRun& run : profile.runs) {

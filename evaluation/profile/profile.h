@@ -68,8 +68,8 @@ struct StageSummary {
 };
 
 struct ProfileSummary {
-  /// sense and map: of the depth images, where there are any; then the stages of the replanning
-  /// step, and what is left of it as "other".
+  /// First sense and map of the depth images, where there are any. Then the stages of the
+  /// replanning step, and the rest of it as "other".
   std::vector<StageSummary> stages;
   StageSummary total;
   int deadline_misses = 0;  ///< steps whose wall time exceeded the deadline

@@ -29,7 +29,7 @@ CompareOptions SolvesOf(const BackendsOptions& options, double gap) {
   return compare;
 }
 
-// Of each step the median of its passes, as of each solve: the passes are no more steps.
+// The median of each step's passes, as for each solve: repeated passes are no additional steps.
 Quantiles MedianSteps(const Profile& profile) {
   std::vector<double> medians;
   for (std::size_t step = 0; step < profile.runs.front().samples.replans.size(); ++step) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One record, asked again of several backends: what their solves cost, and their whole steps.
+// One record, replayed with several backends: the cost of their solves and of their whole steps.
 #pragma once
 
 #include <functional>
@@ -27,10 +27,11 @@ struct BackendsOptions {
 
 /// One backend on the steps of a record.
 struct BackendLatency {
-  /// Its solves of the problems that the record's own backend was asked: until a feasible point is within the
-  /// gap of the best known.
+  /// Its solves of the problems that the record's own backend had. Each ends at a feasible point within the gap of the
+  /// best known cost.
   BackendSummary solves;
-  /// Whole steps with this backend in the loop, as it would fly: of each the median of its passes.
+  /// Whole steps with this backend in the loop, as it would fly. Each step's time is the median of
+  /// its passes.
   Quantiles step_ms;
   Quantiles allocations;  ///< of a step
   int plans = 0;          ///< steps that made a new plan

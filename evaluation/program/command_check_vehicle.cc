@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// touchdown check-vehicle: all that a vehicle's file lacks, what it is, and whether it hovers.
+// touchdown check-vehicle: faults of a vehicle's file, its parameters, and whether it hovers.
 #include <fstream>
 #include <iostream>
 #include <memory>

@@ -37,7 +37,7 @@ struct CompareArguments {
   bool allow_debug = false;
 };
 
-/// Options that say nothing of what is asked for are refused, not ignored.
+/// Options without an effect are refused, not ignored.
 void CheckApplies(const Command& command, const CompareArguments& arguments) {
   const std::string& set = arguments.problem_set;
   const bool landing = set == "landing";

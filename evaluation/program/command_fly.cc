@@ -189,7 +189,7 @@ void CheckFlightOutputs(const FlyArguments& arguments, const Scenario& scenario)
   if (!arguments.save_map.empty()) CheckMapPath("--save-map", arguments.save_map);
 }
 
-// The result is printed first: a file or picture that fails does not take it along.
+// The result is printed first, so that a file or picture that fails does not hide it.
 int Fly(const FlyArguments& arguments, const Scenario& scenario, const Registries& registries) {
   CheckFlightOutputs(arguments, scenario);
   TrialRecord record;

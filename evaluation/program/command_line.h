@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the commands say to the parser of the command line. It is CLI11, whose header takes as long to
-// compile as a command itself: here it is only declared, and command_line.cc alone includes it for
-// all of them.
+// What the commands say to the parser of the command line, CLI11. CLI11's header takes as long to compile as a command
+// itself. So it is only declared here, and command_line.cc alone includes it.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +18,7 @@ class Validator;
 
 namespace touchdown::evaluation {
 
-/// What the words of an option must be.
+/// The allowed words of an option.
 class Rule {
  public:
   explicit Rule(std::shared_ptr<const CLI::Validator> validator);

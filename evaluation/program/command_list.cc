@@ -117,7 +117,7 @@ Json ListParts(const std::vector<Entry>& registry) {
   return list;
 }
 
-/// What stands below a list, in words.
+/// The words below a list.
 constexpr char kBackendsLegend[] =
     "Below each backend: the formulations that it can solve (solver.endpoint, solver.arrival, "
     "solver.limits), and its options.\n";

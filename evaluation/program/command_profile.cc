@@ -45,7 +45,8 @@ void CheckProfileOutputs(const ProfileArguments& arguments) {
   if (!arguments.db.empty()) CheckNewStudy("--db", arguments.db);
 }
 
-/// What a comparison of backends does not write is refused, and what nothing else heeds.
+/// Refuses options of files that a comparison of backends does not write, and options without an
+/// effect.
 void CheckApplies(const Command& command) {
   if (!command.Given("--backends")) {
     if (command.Given("--gap")) throw BadInput("--gap has no effect without --backends.");

@@ -141,7 +141,7 @@ int RunFlights(const StudyArguments& arguments, const Registries& registries) {
   return all_reached ? kDone : kFellShort;
 }
 
-/// What each constant of the step is worth, in all the sets and kinds together.
+/// The effect of each constant of the step, over all sets and kinds.
 int RunSensitivity(const StudyArguments& arguments, const Registries& registries) {
   CheckTimings(arguments.allow_debug);
   if (arguments.pin) PinToCpu(*arguments.pin);

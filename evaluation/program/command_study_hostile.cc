@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// touchdown study hostile: landings in worlds that are made to hurt, under every condition that is
-// assumed and some that are not.
+// touchdown study hostile: landings in difficult worlds, under every assumed condition and some
+// beyond the assumptions.
 #include "evaluation/program/command_study_hostile.h"
 
 #include <algorithm>
@@ -80,7 +80,7 @@ int Show(const HostileArguments& arguments, const Registries& registries) {
   return kDone;
 }
 
-// All flights, or the one that is asked for as a campaign of its own.
+// All flights, or the requested one as a campaign of its own.
 Campaign CampaignOf(const HostileArguments& arguments, const Registries& registries) {
   if (!arguments.only) {
     return HostileCampaign(arguments.options,

@@ -40,7 +40,7 @@ struct SweepArguments {
   bool json = false;
 };
 
-// A picture has the axes that were varied: two lists at most, for a table of cells is flat.
+// A picture has the varied keys as axes: two lists at most, because a table of cells is flat.
 void CheckPicture(const std::string& picture, const std::vector<Variation>& variations) {
   if (picture.empty()) return;
   const auto lists = std::count_if(variations.begin(), variations.end(),

@@ -46,12 +46,12 @@ struct ScenarioArguments {
   void AddTo(Command command, bool scenario_required);
   /// --set and its short forms, in the order in which they count.
   std::vector<std::string> Overrides() const;
-  /// The scenario with these; says what to look at in its vehicle. @throws BadInput as LoadScenario does, and for a --backend of a planner that
-  /// has its own.
+  /// The scenario with these options. Prints findings in its vehicle's file. @throws BadInput as LoadScenario does, and
+  /// for a --backend of a planner that has its own.
   Scenario Load(const Registries& registries) const;
 };
 
-/// @throws BadInput if the timings of this build mean nothing and the user did not ask for them.
+/// @throws BadInput if this build's timings are meaningless and the user did not ask for them.
 void CheckTimings(bool allow_debug);
 
 /// Says on stdout that a page was written.
@@ -60,13 +60,14 @@ void PrintPagePath(const std::string& path);
 /// Tells the log how far a page of flights is.
 ReplayProgress LogReplay();
 
-/// Tells the log how far a video is. While it lives SIGINT and SIGTERM end the making of it, by Interruption: nothing of it is left.
+/// Logs how far a video is. While it lives, SIGINT and SIGTERM end the work by Interruption, and nothing of the video
+/// is left.
 VideoProgress TellVideo();
 
 /// `--record` of campaigns: which flights are recorded; with the words that it takes.
 void AddRecorded(Command command, std::string* which, const std::string& help);
 
-/// @throws BadInput where flights are to be recorded and there is no report that they could stand beside.
+/// @throws BadInput if flights are to be recorded without a report beside which they could be.
 void CheckRecorded(const std::string& which, const std::string& html);
 
 /// CheckOutputPath for a study, which is never overwritten. @throws BadInput

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Parses the command line with CLI11 and maps every way to fail to the program's exit statuses:
-// what the user wrote (CLI::ParseError, BadInput) is 2, what the program could not do (any other
-// exception) is 1, each with one sentence on stderr.
+// Parses the command line with CLI11 and maps every failure to an exit status of the program.
+// Faults of the input (CLI::ParseError, BadInput) are 2; faults of the program (any other
+// exception) are 1. Each prints one sentence on stderr.
 #include "touchdown/evaluation/program/program.h"
 
 #include <algorithm>
@@ -144,14 +144,14 @@ void CheckCommand(const CLI::App& app, const char* const* word, const char* cons
       fmt::format("unknown command {}{}{}.", *word, of, Instead(*word, names, "the commands are")));
 }
 
-// A sentence that says what was meant needs no other help.
+// A sentence that suggests the right word needs no other help.
 std::string TryHelp(std::string sentence) {
   if (!sentence.ends_with("?)")) sentence += " (try --help)";
   return sentence;
 }
 
-// The words that the chosen command does not know, the options among them where there are any: what follows
-// an unknown option is its value.
+// The words that the chosen command does not know. If options are among them, only these: the words after an unknown
+// option are its value.
 std::string Unknown(const CLI::App& app) {
   const CLI::App* command = &app;
   std::string name = app.get_name();
@@ -173,7 +173,8 @@ std::string Unknown(const CLI::App& app) {
                          : fmt::format("{} has no option {}", name, fmt::join(options, ", "));
 }
 
-// One sentence in one line, though words from outside stand in it: names of files, values of keys.
+// One sentence in one line, even if it contains outside words such as names of files and values of
+// keys.
 void Complain(const std::string& sentence) { spdlog::error("{}", InOneLine(sentence)); }
 
 }  // namespace

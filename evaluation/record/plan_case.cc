@@ -21,7 +21,7 @@ namespace {
 
 constexpr double kDrawnAround = 3.0;  // occupied cells this near to what was planned [m]
 
-// What the first step of a flight asks for, in still air: contact, or to follow above the pad.
+// The target of a flight's first step, in still air: contact, or to follow above the pad.
 planning::EndpointTarget FirstTarget(const Scenario& scenario,
                                      const estimation::VehicleModel& model) {
   const control::MissionParameters mission;

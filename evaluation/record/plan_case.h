@@ -12,9 +12,9 @@
 
 namespace touchdown::evaluation {
 
-/// A step of no flight: the vehicle hovers at the scenario's start, the obstacles in the map's
-/// window are all known, and so is the pad's future; the first plan to above the pad is asked for.
-/// The recorded result of its only step is empty. @throws BadInput if the scenario cannot be set up.
+/// A step without a flight. The vehicle hovers at the scenario's start. The obstacles in the map's window and the pad's
+/// future are known. The first plan, to above the pad, is asked for. The recorded result of its only step is empty.
+/// @throws BadInput if the scenario cannot be set up.
 RecordedFlight StepFromStart(const Scenario& scenario, const Registries& registries);
 
 /// A solved step with all that explains it.
@@ -41,7 +41,7 @@ struct SolvedStep {
   static constexpr double kPadStep = 0.1;     ///< [s]
 };
 
-/// Solves the step that `replay`, of `flight`, was brought to: once for its times, once more written down. Without the
+/// Solves the step of `flight` to which `replay` was brought: once for its times, once more with a log. Without the
 /// map's cells. @throws BadInput if it is the step of another planner than landing.
 SolvedStep SolveSought(const RecordedFlight& flight, Replay* replay);
 

@@ -127,7 +127,8 @@ std::string TimesText(const planning::StageTimes& times) {
 
 namespace {
 
-// What was committed before and is flown on: without a newer pair, to the end of its stop.
+// The trajectory committed before, which is flown on. Without a newer pair it goes to the end of
+// its stop.
 std::string CommittedText(const planning::FlightPair& pair) {
   const planning::UniformBspline& last = pair.Last();
   const std::string end =

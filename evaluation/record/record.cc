@@ -183,7 +183,8 @@ void WritePoints(SqliteStatement& insert, int id, const char* curve,
   for (int i = 0; i < q.cols(); ++i) insert.Run(id, curve, i, q(0, i), q(1, i), q(2, i));
 }
 
-// What the replanner is asked again with: one row a step, points and matrix rows beside it.
+// The input for asking the replanner again: one row a step, with points and matrix rows in other
+// tables.
 void WriteRequests(SqliteDb& db, const std::vector<RecordPlan>& plans) {
   SqliteStatement input = db.Prepare(
       "INSERT INTO replan_input VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
@@ -384,7 +385,7 @@ void WriteRecord(const std::string& path, const Scenario& scenario, const TrialR
   AtomicFile file(path);
   {
     SqliteDb db(file.working_path(), SqliteDb::Mode::kCreate);
-    // The file is thrown away if anything fails, so that no journal is needed.
+    // The file is removed if anything fails, so no journal is needed.
     db.Execute("PRAGMA journal_mode=OFF; PRAGMA synchronous=OFF");
     SqliteTransaction transaction(db);
     db.Execute(kSchema);

@@ -12,8 +12,8 @@ namespace touchdown::evaluation {
 /// Version of the file format that docs/record.md describes.
 inline constexpr int kRecordVersion = 19;
 
-/// Writes one landing to an SQLite file (docs/record.md). The file appears whole or not at all: it
-/// is written beside its place and moved there; one that was there is replaced.
+/// Writes one landing to an SQLite file (docs/record.md). The file appears whole or not at all. It
+/// is written beside its place and moved there, and replaces an older one.
 /// @throws SqliteError, std::filesystem::filesystem_error
 void WriteRecord(const std::string& path, const Scenario& scenario, const TrialResult& result,
                  const TrialRecord& record);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A record is data from outside: every number that a planner is given is looked at first.
+// A record is data from outside. Every number is checked before a planner gets it.
 #include "evaluation/record/record_reader.h"
 
 #include <array>
@@ -325,7 +325,7 @@ Meta ReadMeta(SqliteDb& db) {
   return meta;
 }
 
-// Nor may the grid that this build makes for the scenario differ from the one that was recorded.
+// The grid that this build makes for the scenario must also be the recorded one.
 void CheckMap(const Meta& meta, const Registries& registries, RecordedFlight* flight) {
   const Scenario& scenario = flight->scenario;
   const planning::OccupancyMap map(
@@ -341,7 +341,7 @@ void CheckMap(const Meta& meta, const Registries& registries, RecordedFlight* fl
   }
 }
 
-// The files that the scenario names may not have become others: a step would be solved against
+// The files that the scenario names must be unchanged. Otherwise a step would be solved with
 // another pad or vehicle.
 void CheckOutsideFiles(const Meta& meta, const Scenario& scenario) {
   const OutsideFiles now = OutsideFilesOf(scenario);
@@ -415,7 +415,7 @@ RecordedFlight ReadAll(const std::string& path, const std::vector<std::string>& 
   CheckFormat(meta);
   RecordedFlight flight;
   flight.path = path;
-  // The steps hold the whole map: what was known beforehand is in the first of them.
+  // The steps hold the whole map. The first of them has what was known beforehand.
   std::vector<std::string> all = {"seed=" + meta.at("seed"), "map.prior=none"};
   all.insert(all.end(), overrides.begin(), overrides.end());
   flight.scenario = ParseScenario(meta.at("scenario_yaml"), meta.at("scenario"),

@@ -9,7 +9,7 @@
 
 namespace touchdown::evaluation {
 
-/// The part of a record that replanning steps are asked again from.
+/// The part of a record from which replanning steps are asked again.
 struct RecordedFlight {
   std::string path;
   Scenario scenario;  ///< the effective one, its seed that of the flight
@@ -23,13 +23,13 @@ struct RecordedFlight {
   std::vector<planning::CellCube> prior;  ///< near the flight, what map.prior held occupied
 };
 
-/// What of a recorded flight can be changed, as a help text says it.
+/// The keys of a recorded flight that can be changed, as a help text says it.
 inline constexpr const char* kReplayKeys =
     "solver.*, terms.*, planning.guides, planning.max_work and planning.warm_start";
 
-/// Reads a record that WriteRecord wrote. `overrides` change the recorded scenario. @throws BadInput
-/// with one sentence: an override is none of kReplayKeys, or, with the file's name, it is not there, no record, of another
-/// version, or something in it is missing or out of its range.
+/// Reads a record that WriteRecord wrote. `overrides` change the recorded scenario.
+/// @throws BadInput with one sentence. An override is none of kReplayKeys. Or the file is missing, is no record, has
+/// another version, lacks a value or has one out of range; then the sentence names the file.
 RecordedFlight ReadRecord(const std::string& path, const std::vector<std::string>& overrides,
                           const Registries& registries);
 

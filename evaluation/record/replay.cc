@@ -24,7 +24,7 @@ auto Made(const RecordedFlight& flight, Make&& make) {
   }
 }
 
-// Steps in which a planner has nothing to do are not recorded, nor when a measured answer that came late took over.
+// Not recorded are steps in which a planner has nothing to do, and the time when a late measured answer took over.
 void RequireAllSteps(const RecordedFlight& flight, const Registries& registries) {
   const Scenario& scenario = flight.scenario;
   const PlannerEntry& entry = PlannerOf(scenario, registries);

@@ -9,10 +9,9 @@
 
 namespace touchdown::evaluation {
 
-/// Asks the replanning steps of a record again: the same options, the map as it was, what the
-/// planner remembered, the same input. With the recorded scenario and the recording build the
-/// answers are the recorded ones bit for bit. The landing planner is told what it remembered; any other is asked
-/// all steps before, from the first hover on.
+/// Asks the replanning steps of a record again: the same options, the map as it was, the planner's state, the same
+/// input. With the recorded scenario and the recording build the answers are the recorded ones bit for bit. The landing
+/// planner gets its state from the record. Any other planner is asked all steps before, from the first hover on.
 class Replay {
  public:
   /// `flight` and `registries` must outlive it. @throws BadInput if the scenario cannot be set up, or was flown by a
@@ -51,7 +50,7 @@ class Replay {
   planning::Replanner* replanner_;
   planning::OccupancyMap map_;
   int step_ = -1;
-  bool asked_ = false;  // the step, of a planner that cannot be told what it remembered
+  bool asked_ = false;  // the step, of a planner whose state cannot be set
 };
 
 }  // namespace touchdown::evaluation

@@ -12,8 +12,8 @@
 
 namespace touchdown::evaluation {
 
-/// Mean |error| in x and y over the last 5 s [m] of a landing whose style follows the pad before it sinks:
-/// a planned descent is still on its way then, so that its figure compares with nothing.
+/// Mean |error| in x and y over the last 5 s [m] of a landing whose style follows the pad before it sinks. Empty for a
+/// planned descent: it is still on its way then, so its figure is not comparable.
 std::optional<Eigen::Vector2d> LastErrors(const Scenario& scenario, const TrialResult& result);
 
 /// The document of `touchdown land --json`. Everything but `wall_clock` is the same for the same

@@ -18,15 +18,15 @@
 namespace touchdown::evaluation {
 namespace {
 
-// Nothing is imported: that would take a second. A mere folder of a package's name, as the working directory may have one, has no
-// origin.
+// Nothing is imported: that would take a second. A mere folder with a package's name, for example in the working
+// directory, has no origin.
 constexpr char kQuestion[] =
     "import importlib.util as u, sys\n"
     "origin = lambda package: getattr(u.find_spec(package), 'origin', None)\n"
     "print('lacks', *[package for package in sys.argv[1:] if origin(package) is None])\n";
 constexpr std::string_view kAnswer = "lacks";
 
-// What is set to nothing is not set.
+// An empty variable counts as not set.
 std::string Variable(const char* name) {
   const char* const value = std::getenv(name);
   return value == nullptr ? "" : value;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What Python prints is none of the program's: stdout stays one JSON document, and a traceback becomes one sentence.
+// Python's output is not the program's output: stdout stays one JSON document, and a traceback becomes one sentence.
 #include "evaluation/report/report_program.h"
 
 #include <cstdlib>

@@ -7,8 +7,8 @@
 namespace touchdown::evaluation {
 
 /// Draws a picture with `draw(table, picture)`, one of those below. The table, or document, is the
-/// one at `kept`; where that is empty, `write` is told where to write one, beside the picture, that
-/// is removed again. @throws what `write` and `draw` throw.
+/// one at `kept`. If `kept` is empty, `write` writes one beside the picture, and it is removed
+/// afterwards. @throws what `write` and `draw` throw.
 void DrawFrom(const std::string& kept, const std::string& picture,
               const std::function<void(const std::string& table)>& write,
               const std::function<void(const std::string&, const std::string&)>& draw);
@@ -39,7 +39,7 @@ void DrawPlan(const std::string& document_path, const std::string& picture_path)
 /// Draws a vehicle from its document (vehicle_check.h). @throws as DrawLanding
 void DrawVehicle(const std::string& document_path, const std::string& picture_path);
 
-/// Whether the report of a study could be written. @throws std::runtime_error naming the packages that are missing
+/// Checks that the report of a study can be written. @throws std::runtime_error naming the packages that are missing
 void CheckStudyReport();
 
 /// Writes report, tables and figures of a flown study into its folder (study_run.h). @throws as DrawLanding

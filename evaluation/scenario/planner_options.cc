@@ -66,7 +66,7 @@ planning::ReplannerOptions PlannerOptions(const Scenario& scenario,
   options.max_work = scenario.planning.max_work;
   options.warm_start = scenario.planning.warm_start;
   options.gap = scenario.solver.gap;
-  // With a measured latency a plan may come with the longest after one with the shortest.
+  // With a measured latency, a plan with the longest latency may follow one with the shortest.
   const double period = kClockSteps * sim::WorldConfig{}.timestep + 1.0 / scenario.planning.rate;
   control::SetVehicle(model, EnvelopeOf(scenario), scenario.pad.deck_size, period,
                       scenario.planning.latency.measured ? LongestLatency(scenario) : 0.0,
@@ -112,8 +112,8 @@ double ClosePlannerRate(const Scenario& scenario, const PlannerEntry& planner) {
 }
 
 double LongestLatency(const Scenario& scenario) {
-  // Steps are taken on the simulation's clock: where the period is no multiple of its time step,
-  // some follow each other a little faster.
+  // Steps are on the simulation's clock. If the period is no multiple of its time step, some steps
+  // follow a little faster.
   const double step = sim::WorldConfig{}.timestep;
   return step * std::floor(1.0 / scenario.planning.rate / step + 1e-6);
 }

@@ -10,12 +10,12 @@
 
 namespace touchdown::evaluation {
 
-/// What the replanner is told of a scenario and its vehicle; `terms` are those it may use.
+/// The replanner's options for a scenario and its vehicle; `terms` are those it may use.
 planning::ReplannerOptions PlannerOptions(const Scenario& scenario,
                                           const estimation::VehicleModel& model,
                                           const planning::TermRegistry& terms);
 
-/// Where terms of the landing planner act, of those that say so.
+/// Where the landing planner's terms act, of those that give it.
 std::vector<planning::NamedZone> ZonesOf(const planning::ReplannerOptions& options);
 
 /// The planner that the scenario asks for.
@@ -39,13 +39,13 @@ planning::TermSettings TermSettingsOf(const std::string& name,
 /// What the vehicle may do in flight.
 control::Envelope EnvelopeOf(const Scenario& scenario);
 
-/// How far plans stay from obstacles: planning.clearance, but no less than what proven pairs
-/// keep in calm air, the hull at every tilt and its margins [m].
+/// How far plans stay from obstacles [m]: planning.clearance. For a planner that proves pairs it is
+/// at least what these keep in calm air: the hull at every tilt and its margins.
 double PlanClearance(const Scenario& scenario, const estimation::VehicleModel& model,
                      const Registries& registries);
 
 /// Longest time from the question to the plan [s]: the least time between two replanning steps. A
-/// plan that took over later would still be waiting when the next one is asked for.
+/// plan that takes over later would still wait when the next one is asked for.
 double LongestLatency(const Scenario& scenario);
 
 }  // namespace touchdown::evaluation

@@ -14,7 +14,7 @@
 namespace touchdown::evaluation {
 namespace {
 
-/// Calls `see` with each part of the registries and with what it is.
+/// Calls `see` with each part of the registries and its kind.
 template <class See>
 void ForEachPart(const Registries& registries, See&& see) {
   for (const PlannerEntry& part : registries.planners) see("planner", part, !part.make);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reading and writing scenario files. The YAML tree is walked once and every leaf is looked up in
-// the schema by its dotted name; what the schema does not know is refused with its file and line.
+// Reading and writing scenario files. The YAML tree is walked once, and every leaf is looked up in
+// the schema by its dotted name. A name that the schema does not know is refused with its file and
+// line.
 #include "touchdown/evaluation/scenario/scenario.h"
 
 #include <algorithm>
@@ -97,7 +98,7 @@ class Reader {
                        [&](const auto& key) { return key.name.rfind(name + ".", 0) == 0; });
   }
 
-  // The keys of the same group, or the groups: what may stand here instead. What is near may be in another group.
+  // The keys of the same group, or the groups: the alternatives at this place. A near name may be in another group.
   std::string Suggest(const std::string& name) const {
     const std::size_t dot = name.rfind('.');
     const std::string group = dot == std::string::npos ? "" : name.substr(0, dot + 1);
@@ -168,7 +169,7 @@ class Reader {
   const Keys& keys_;
 };
 
-// `load` gives the YAML documents of what sentences call `path`, a file of the kind `what`.
+// `load` gives the YAML documents. Messages call the file `path` and its kind `what`.
 template <typename Load>
 YAML::Node OneDocument(const std::string& path, const Load& load,
                        const std::string& what = "scenario") {
@@ -207,7 +208,7 @@ void ApplyOverride(const std::string& text, const Keys& keys, ScenarioSource* so
   Reader(source, file, false, keys).ReadEntry(name, value, where);
 }
 
-// What a vehicle's own file beside it says of its airframe, where the scenario does not: FILE.airframe.yaml beside
+// Reads the airframe file beside a vehicle's file, for keys that the scenario does not set: FILE.airframe.yaml beside
 // FILE.xml, with the keys of `airframe`.
 void ReadAirframe(const Keys& keys, ScenarioSource* source) {
   const std::string path = AirframeFile(source->scenario.vehicle);
@@ -225,8 +226,8 @@ void ReadAirframe(const Keys& keys, ScenarioSource* source) {
   }
 }
 
-// What the keys that were given ask of those that were not: some planners' plans do not lead to contact, one
-// that does ends when it is best, and a wind's direction that is given is meant, not one that is drawn.
+// Sets defaults that depend on other keys. A planner whose plans do not lead to contact gets the vertical descent.
+// Plans to contact get a free arrival, others a fixed one. If the wind's direction is given, it is not drawn.
 void SuitDefaults(const Registries& registries, ScenarioSource* source) {
   Scenario& s = source->scenario;
   const auto given = [source](const char* key) { return source->where.count(key) != 0; };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Checks across keys. The start is a box of positions (its spread): every obstacle must stay
 // outside it by the vehicle's hull. The pad's path is sampled every 0.1 s until the time-out, for
-// both ends of the drawn phase: every obstacle must stay outside the deck's circumscribed circle.
+// both ends of the drawn phase. Every obstacle must stay outside the deck's circumscribed circle.
 #include "evaluation/scenario/scenario_check.h"
 
 #include <algorithm>
@@ -79,7 +79,7 @@ void CheckPlanning(const ScenarioSource& source, const estimation::VehicleModel&
   const PlanningLatency& latency = s.planning.latency;
   const double longest = 1e3 * LongestLatency(s);
   if (!latency.measured && latency.ms > longest) {
-    // With the latency left at its default it is the rate that was chosen too high.
+    // If the latency has its default, the fault is a rate that is too high.
     const bool chosen = source.where.count("planning.latency") != 0;
     throw BadInput(fmt::format(
         "{}: planning.latency must be in [0, {:.4g}] ms, the time between two replanning steps at "
@@ -360,7 +360,7 @@ void CheckPadMotion(const ScenarioSource& source, const ObstacleList& obstacles,
   }
 }
 
-// The pad may begin anywhere in the drawn phase: its path there is sampled like its way later on.
+// The pad may begin anywhere in the drawn phase. Its path there is sampled like its later path.
 void CheckStartBesidePad(const ScenarioSource& source, const estimation::VehicleModel& model,
                          const Registries& registries) {
   const Scenario& s = source.scenario;

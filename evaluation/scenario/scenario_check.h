@@ -29,14 +29,14 @@ struct ScenarioSource {
 /// - an airframe or a wind direction without effect;
 /// - a backend, term, option or parameter that the registries do not know or allow;
 /// - a formulation that the backend refuses.
-/// A pad faster than the vehicle is not refused: the flight shows what becomes of it. @throws BadInput
+/// A pad faster than the vehicle is not refused: the flight shows the consequence. @throws BadInput
 void CheckScenario(const ScenarioSource& source, const Registries& registries);
 
-/// Whether images of the pad can be made: whether there is room for its printed sheet. @param where begins the sentence.
+/// Checks that images of the pad can be made: there is room for its printed sheet. @param where begins the sentence.
 /// @param with what makes them. @throws BadInput
 void RequireSheetRoom(const Scenario& scenario, const std::string& where, const std::string& with);
 
-/// A term by its name. Throws std::invalid_argument saying what was probably meant.
+/// A term by its name. Throws std::invalid_argument suggesting the right name.
 const planning::TermEntry& TermNamed(const planning::TermRegistry& terms, const std::string& name);
 
 }  // namespace touchdown::evaluation

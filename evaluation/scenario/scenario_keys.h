@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the files of scenario keys share: the makers of a key, by the type of its value, and the
+// Shared by the files of scenario keys: the makers of a key, by the type of its value, and the
 // sections that ScenarioKeys() puts together. Internal to the schema.
 #pragma once
 

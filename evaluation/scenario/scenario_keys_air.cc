@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Keys of the air and of a vehicle that is not what its pilot thinks: docs/wind.md.
+// Keys of the air, and of a vehicle that differs from the model of its onboard software:
+// docs/wind.md.
 #include "evaluation/scenario/scenario_keys.h"
 
 namespace touchdown::evaluation::schema {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Keys of what the vehicle knows of its own state, and of the sensors it knows that from.
+// Keys of the vehicle's estimate of its own state, and of the sensors for it.
 #include "evaluation/scenario/scenario_keys.h"
 
 namespace touchdown::evaluation::schema {

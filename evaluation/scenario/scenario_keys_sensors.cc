@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Keys of the sensors that see the pad and the obstacles, and of what is made of them.
+// Keys of the sensors for pad and obstacles, and of the use of their data.
 #include "evaluation/scenario/scenario_keys.h"
 
 namespace touchdown::evaluation::schema {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Keys of what is there and of the trial: description, pad, vehicle, time-out and seed.
+// Keys of the world and of the trial: description, pad, vehicle, time-out and seed.
 #include "evaluation/scenario/scenario_keys.h"
 
 namespace touchdown::evaluation::schema {

@@ -29,8 +29,8 @@ struct SchemaKey {
 const std::vector<SchemaKey<Scenario>>& ScenarioKeys();
 /// These, and behind them those of the parts' parameters.
 std::vector<SchemaKey<Scenario>> ScenarioKeys(const Registries& registries);
-/// The key called `name`: of `keys`, the list above, or open: solver.options.<name> and terms.<term>.<key>,
-/// whose names and ranges backends and terms know (CheckScenario asks them). Open keys have no `get`.
+/// The key called `name`: from `keys`, the list above, or an open key: solver.options.<name> and terms.<term>.<key>.
+/// Backends and terms know the names and ranges of open keys (CheckScenario asks them). Open keys have no `get`.
 std::optional<SchemaKey<Scenario>> FindScenarioKey(const std::string& name,
                                                    const std::vector<SchemaKey<Scenario>>& keys);
 

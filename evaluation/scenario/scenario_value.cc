@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Numbers are read by std::from_chars over the whole text, so that "1.0x", "1,5" and YAML's own
-// .inf and .nan are mistakes and not values; everything is written so that it reads back bit by
-// bit.
+// Numbers are read by std::from_chars over the whole text. So "1.0x", "1,5" and YAML's own .inf and
+// .nan are mistakes and not values. Every written value reads back bit by bit.
 #include "evaluation/scenario/scenario_value.h"
 
 #include <algorithm>

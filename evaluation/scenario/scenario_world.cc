@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Units become SI here (degrees to radians) and draws are made: each purpose has its own stream,
-// and every stream is drawn from whether or not its figure is used, so that one option never shifts
+// Units become SI here (degrees to radians), and draws are made. Each purpose has its own stream.
+// Every stream is drawn from, whether or not its figure is used, so that one option never shifts
 // another's draws.
 #include "evaluation/scenario/scenario_world.h"
 
@@ -21,7 +21,7 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// Whatever is known of the pad: it is not where the vehicle is to go.
+/// Predicts the goal and ignores the pad's estimate: the vehicle does not go to the pad.
 class ToGoal final : public estimation::PadPredictor {
  public:
   explicit ToGoal(const Scenario& scenario) : goal_(GoalOf(scenario)) {}

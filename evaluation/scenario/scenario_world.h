@@ -35,14 +35,14 @@ std::unique_ptr<estimation::PadPredictor> PredictorOf(const Scenario& scenario,
 
 sim::PadGeometry PadGeometryOf(const Scenario& scenario);
 
-/// What the scenario says of a vehicle's file in the common form.
+/// The scenario's keys for a vehicle's file in the common form.
 sim::AirframeExtras AirframeOf(const Scenario& scenario);
 
 /// The path of the airframe file beside a vehicle's; empty where there is none.
 std::string AirframeFile(const std::string& vehicle);
 
-/// The default scenario with a vehicle's file, what stands in the airframe file beside it, and overrides KEY=VALUE. The
-/// vehicle is not looked at. @throws BadInput as LoadScenario does for keys and values.
+/// The default scenario with a vehicle's file, the keys of the airframe file beside it, and overrides KEY=VALUE. The
+/// vehicle is not checked. @throws BadInput as LoadScenario does for keys and values.
 Scenario UncheckedVehicleScenario(const std::string& vehicle,
                                   const std::vector<std::string>& overrides,
                                   const Registries& registries);
@@ -50,12 +50,11 @@ Scenario UncheckedVehicleScenario(const std::string& vehicle,
 /// MJCF text of the scenario's vehicle. @throws std::invalid_argument naming the file.
 std::string VehicleMjcf(const Scenario& scenario);
 
-/// What to look at in the vehicle's file though it can be flown. @throws std::invalid_argument as VehicleMjcf.
+/// Findings in the vehicle's file though it can be flown. @throws std::invalid_argument as VehicleMjcf.
 std::vector<sim::VehicleFinding> VehicleWarnings(const Scenario& scenario);
 
-/// What the files outside of the scenario said that a flight depends on, as a record keeps it: the
-/// points of the waypoint file, the hashes of the vehicle's MJCF text and of the files of obstacles; each `none` without
-/// such a file.
+/// Contents of the outside files that a flight depends on, as a record keeps them. They are the points of the waypoint
+/// file and the hashes of the vehicle's MJCF text and of the obstacle files. Each is `none` without such a file.
 /// @throws std::invalid_argument as PadCourseOf and VehicleMjcf do.
 struct OutsideFiles {
   std::string pad_waypoints = "none";
@@ -64,7 +63,7 @@ struct OutsideFiles {
 };
 OutsideFiles OutsideFilesOf(const Scenario& scenario);
 
-/// What a trial draws before it begins.
+/// The draws of a trial before it begins.
 struct TrialDraw {
   Eigen::Vector3d p_WB = Eigen::Vector3d::Zero();  ///< start of the vehicle [m]
   double yaw = 0.0;                                ///< [rad]

@@ -9,16 +9,16 @@
 
 namespace touchdown::evaluation {
 
-/// Reads CSV text of pad waypoints in W. Its first line names the columns, `t,x,y` or `x,y,speed`: the
-/// time of each point [s], or the speed from it to the next one [m/s], the first of which is left at
-/// t = 0. Empty lines and those that begin with # are skipped. docs/pad_motions.md has an example.
+/// Reads CSV text of pad waypoints in W. Its first line names the columns. `t,x,y` has the time of each point [s].
+/// `x,y,speed` has the speed from each point to the next one [m/s]; the first point is left at t = 0. Empty lines and
+/// those that begin with # are skipped. docs/pad_motions.md has an example.
 /// Throws std::invalid_argument, the line first; the caller names the file.
 std::vector<sim::PadWaypoint> ReadWaypoints(std::istream& text);
 
 /// The same of the file at `path`.
 std::vector<sim::PadWaypoint> ReadWaypointFile(const std::string& path);
 
-/// The points to the last bit, `t x y` in lines: what a record keeps of the file.
+/// The points, exact to the last bit, as lines `t x y`. A record keeps this text of the file.
 std::string WaypointText(const std::vector<sim::PadWaypoint>& points);
 
 }  // namespace touchdown::evaluation

@@ -103,7 +103,8 @@ std::vector<sim::Obstacle> Read(const OctomapObstacle& spec) {
                            spec.yaw_deg * estimation::kRadPerDeg);
 }
 
-// By all that decides what a file gives: the keys of its element, its size and when it was written.
+// Keyed by all that decides a file's content: the keys of its element, its size and its time of
+// writing.
 class FileCache {
  public:
   using Solids = std::shared_ptr<const std::vector<sim::Obstacle>>;
@@ -208,7 +209,7 @@ double HorizontalGap(const sim::Obstacle& obstacle, const Eigen::Vector2d& centr
   const double by_bounds = beyond(middle, 0.5 * (bounds.max - bounds.min).head<2>());
   const auto* box = std::get_if<sim::Box>(&obstacle);
   if (box == nullptr || box->yaw == 0.0) return by_bounds;
-  // Along the box's own axes the spread is as wide as its shadow there. Both are too short at corners.
+  // Along the box's own axes the spread is as wide as its projection. Both are too short at corners.
   const double c = std::cos(box->yaw), s = std::sin(box->yaw);
   const Eigen::Vector2d off = middle - centre;
   const Eigen::Vector2d along(std::abs(c * off.x() + s * off.y()),

@@ -16,8 +16,8 @@ struct NamedObstacle {
 };
 using ObstacleList = std::vector<NamedObstacle>;
 
-/// All that stands in the scenario's world, list by list (obstacle_keys.h). What files hold is read once and kept for
-/// the next call, until they change.
+/// All obstacles of the scenario's world, list by list (obstacle_keys.h). Files are read once; their content is kept
+/// for the next call, until they change.
 /// @throws BadInput "<key>: <file>: <why>" for a file that gives no obstacles.
 ObstacleList ObstaclesOf(const Scenario& scenario);
 
@@ -26,7 +26,8 @@ ObstacleList ObstaclesOf(const Scenario& scenario);
 std::string WorldHash(const Scenario& scenario);
 
 /// Horizontal distance between a point's box of half size `spread` and the part of an obstacle in the heights (z_lo,
-/// z_hi) [m]; infinite if there is none. Of a mesh 0 or infinite: whether it comes within `within` of the box.
+/// z_hi) [m]. Infinite if there is no such part. For a mesh it is 0 if the mesh is within `within` of the box, else
+/// infinite.
 double HorizontalGap(const sim::Obstacle& obstacle, const Eigen::Vector2d& centre,
                      const Eigen::Vector2d& spread, double z_lo, double z_hi, double within);
 

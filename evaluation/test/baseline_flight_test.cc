@@ -101,7 +101,7 @@ TEST(BaselineFlight, WithPartsOfThePlannerSwitchedOff) {
   const TrialResult rest = Fly("open", {"planning.endpoint_velocity=rest", "descent=vertical"}, 1);
   const TrialResult whole = Fly("open", {"descent=vertical"}, 1);
   ASSERT_EQ(whole.outcome, Outcome::kLanded);
-  // Plans to where the pad will be, and the vehicle waits for it there: what else, the study says.
+  // It plans to the predicted pad, and the vehicle waits there. The study has more figures.
   EXPECT_GT(rest.replans_by_status.at("planned"), 20);
   EXPECT_NE(rest.simulated_s, whole.simulated_s);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Trials whose process dies or never ends, and trials that fly alone, through backends that are made for it.
+// Trials whose process dies or never ends, and trials that fly alone, with backends that are made for these tests.
 #include <unistd.h>
 
 #include <chrono>

@@ -245,7 +245,7 @@ TEST_F(CampaignFiles, AMergeIsRefusedWhereTrialsDoNotFit) {
   refused({a, c}, true, c + ": trial 0 is in " + a);
   refused({a, d}, true, d + ": it does not belong to " + a + ": its sweep_seed is 8, not 7");
   refused({a, At("none.db")}, true, "none.db");
-  // What is missing can be flown afterwards.
+  // Missing trials can be flown afterwards.
   EXPECT_EQ(MergeTrials(At("out.db"), {a, b}, true).flown, 3);
   EXPECT_THAT(
       [&] {
@@ -274,7 +274,7 @@ TEST_F(CampaignFiles, LostTrialsAreFlownAgainOnlyWhenAsked) {
   EXPECT_EQ(Tables(At("a.db")), Tables(At("whole.db")));
 }
 
-// What a merge reads of a file is of one moment; were it not, this is what it could have written.
+// A merge reads a file as of one moment. Otherwise it could have written this.
 TEST_F(CampaignFiles, ATrialWithoutItsTimingIsNoResult) {
   Fly(Short(2), To(At("a.db")));
   SqliteDb db(At("a.db"), SqliteDb::Mode::kReadWrite);

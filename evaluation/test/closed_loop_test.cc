@@ -60,7 +60,8 @@ TEST(ClosedLoop, NoRatioBeyondTheLimitsAndNoneWithoutALanding) {
   EXPECT_FALSE(RunTrial(following, 1, StandardRegistries()).t_star_s.has_value());
 }
 
-// Whatever a replanning step commits to is certified; what it keeps or holds was when it began.
+// A trajectory that a replanning step commits is certified. One that it keeps or holds was
+// certified when it began.
 TEST(ClosedLoop, NothingIsFlownWithoutItsCertificate) {
   for (const std::uint64_t seed : {1, 2, 3}) {
     const Scenario scenario =
@@ -171,7 +172,7 @@ TEST(ClosedLoop, TheBaselinesFlyAndNameTheirOutcomes) {
   }
 }
 
-// Over a slow pad the reference 0.8 s ahead is on the stored stop: the camera has to look along the way all the same.
+// Over a slow pad the reference 0.8 s ahead is on the stored stop. The camera still has to look along the way.
 TEST(ClosedLoop, OverASlowPadTheCameraLooksAlongItsWay) {
   const Scenario scenario = Shipped("straight_turn", {"descent=vertical"});
   TrialRecord record;

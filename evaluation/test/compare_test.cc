@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Problems are what flights ask, and a flight does not know who listens.
+// Problems are those of the flights, and a listener does not change a flight.
 #include "evaluation/compare/compare.h"
 
 #include <cmath>
@@ -128,7 +128,7 @@ TEST_F(Flights, ThoseOfTheHostileStudyToo) {
   EXPECT_EQ(Asked(source.flight(1)), Asked(FlownAs(campaign.trials[1])));
 }
 
-// The file says what became of its trials: what is flown again has to come to that.
+// The file has the results of its trials. Trials that are flown again must have the same results.
 TEST_F(Flights, AnotherFlightThanTheFilesIsNoted) {
   SweepOptions sweep;
   sweep.scenario_path = FindScenario("forest");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How an export begins, ends and fails, and the parts that it is made of. What is in its messages is compared with the record by
+// Begin, end and failures of an export, and its parts. What is in its messages is compared with the record by
 // evaluation/mcap/node.
 #include "evaluation/mcap/flight_export.h"
 
@@ -271,7 +271,8 @@ TEST(Solids, AreCoveredByPoints) {
       }
       EXPECT_LT(nearest, 2.0 * kSpacing);
     }
-    // On the surface: none is farther from the middle than the corners, and none far within.
+    // Points are on the surface: none is farther from the middle than the corners, and none is far
+    // inside.
     for (const CloudPoint& point : points) {
       const Eigen::Vector3d p = (solid.pose.inverse() * point.p).cwiseQuotient(0.5 * solid.size);
       const double round = kind == Solid::Kind::kEllipsoid ? p.norm()

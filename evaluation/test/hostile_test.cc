@@ -332,7 +332,7 @@ TEST(HostileReport, PageAndDocumentNameWhatWasFlown) {
   EXPECT_THAT(HostileText(options, {row}), HasSubstr("Collisions with what stands: 1"));
 }
 
-// What did not land is found again, and the page has the same safety figures as the text.
+// Flights that did not land are found again. The page has the same safety figures as the text.
 TEST(HostileReport, WhatStoodIsListed) {
   const HostileOptions options = Of("roof");
   SweepRow row;
@@ -371,7 +371,7 @@ TEST(HostileFlightTest, AVehicleThatIsShutInStandsAndSaysWhy) {
   Scenario s = Room(0.0);
   s.timeout = 90.0;
   s.stand_limit = 4.0;
-  // Some look about in the room for a while first, by plans that they do not get to the end of.
+  // Some first look around in the room for a while, by plans that they do not complete.
   int soon = 0;
   for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6}) {
     const TrialResult stood = RunTrial(s, seed, kRegistries);

@@ -188,7 +188,7 @@ TEST_F(Interpreters, OneThatHangsIsPassedAndNamed) {
   EXPECT_LT(taken.count(), 80.0);
 }
 
-// One test: what is kept is kept for the process.
+// One test, because the kept value lasts for the process.
 TEST_F(Interpreters, AReportAsksUntilOneIsFoundAndKeepsIt) {
   const std::string log = Path("log");
   const std::string answers = "echo \"$*\" | /usr/bin/tail -n 1 >> " + log + "\n";

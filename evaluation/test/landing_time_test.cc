@@ -140,8 +140,8 @@ TEST(LandingTime, PadThatDrivesAheadOrTowards) {
   for (const double speed : {1.5, -1.5}) {
     const sim::PadMotion pad = Line(10.0, speed);
     const LandingTimeTask task = TaskOn(pad);
-    // Caught up with: contact at speed + 0.6. Met head on: the vehicle lets itself be caught, at rest
-    // or driven along, with at least speed - 0.6.
+    // Caught up with: contact at speed + 0.6. The pad comes head on. It catches the vehicle, which is at rest or moves
+    // along, with at least speed - 0.6.
     const double u = std::min(task.speed, speed + task.horizontal_speed);
     const double v = task.speed, a = task.acceleration;
     const auto reach = [&](double T) {
@@ -191,7 +191,7 @@ TEST(LandingTime, LowerBoundIsBelowWhatIsFoundAndNear) {
     const RandomTask r(&random);
     const sim::OraclePadPrediction oracle(r.motion);
     const double lower = LandingTimeLowerBound(r.task, oracle);
-    // Looked for from far below the lower bound: nothing but the bound itself keeps it above.
+    // The search starts far below the lower bound. So only the bound itself keeps the result above.
     const auto upper = LandingTimeUpperBound(r.task, oracle, 0.5 * lower);
     ASSERT_TRUE(upper.has_value()) << i << " " << lower;
     ASSERT_LE(lower, upper->time) << i;
@@ -272,8 +272,8 @@ std::vector<estimation::PadState> PadsWithin(const LandingTimeTask& task,
   return pads;
 }
 
-// Sampled, with differences for velocity and acceleration and the feet as they are: what the bound
-// is called is what is found.
+// The found flight, sampled, with differences for velocity and acceleration and the real feet. It
+// has the properties that the bound claims.
 TEST(LandingTime, WhatIsFoundIsAFlightThatMakesContact) {
   std::mt19937_64 random(8);
   int over_a_corner = 0;
@@ -346,9 +346,9 @@ TEST(LandingTime, LargerLimitsAndALargerPadAreNeverLater) {
   }
 }
 
-/// Time of first contact of a flight that heads for `aim` (from the pad's centre) where the pad will be
-/// at `meeting`, as fast as it can still brake from, with jolts of this share of its acceleration.
-/// Infinite if there is none by `end`. Every step keeps both limits.
+/// Time of first contact of a flight that heads for `aim` (from the pad's centre) where the pad will be at `meeting`.
+/// It is as fast as it can still brake from, with jolts of this share of its acceleration. Infinite if there is no
+/// contact by `end`. Every step keeps both limits.
 double SampledFlight(const RandomTask& r, const Eigen::Vector3d& aim, double meeting, double jolt,
                      double end, std::mt19937_64* random) {
   const double dt = 1e-3;
@@ -396,7 +396,7 @@ TEST(LandingTime, NoSampledFlightArrivesBeforeIt) {
     }
   }
   EXPECT_GT(arrived, 200);
-  EXPECT_GT(early, 50);  // so many are near: a bound that is too late by 10 % would be caught
+  EXPECT_GT(early, 50);  // so many are near that a bound 10 % too late would be noticed
 }
 
 TEST(LandingTime, RefusesWhatIsNoLimit) {

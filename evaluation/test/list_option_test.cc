@@ -10,8 +10,8 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-/// What a list option with the default 9 makes of the words of a command line; `fault`: the message
-/// where they are refused.
+/// The value of a list option with the default 9 after the words of a command line. `fault`: the
+/// message if they are refused.
 struct Parsed {
   std::vector<double> list = {9.0};
   std::string fault;

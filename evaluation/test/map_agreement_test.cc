@@ -38,9 +38,9 @@ Cells Count(const planning::OccupancyMap& map, const octomap::OcTree& tree) {
   return cells;
 }
 
-// What is promised to be seen limits how far a ray frees cells, and a hit ends only what is seen from nearer:
-// the rolling map frees less than OctoMap by design. Whatever it frees OctoMap frees too, but for the cells
-// that two ways of walking along a ray take differently.
+// The rolling map frees less than OctoMap by design. A ray frees cells only where options.thinnest_obstacle would be
+// seen, and only a look from nearer clears a hit. Whatever it frees OctoMap frees too, except for the cells that
+// two ways of walking along a ray take differently.
 TEST(MapAgreement, WhatItFreesOctomapFreesToo) {
   for (const MapFlight& flight : {StraightTurnFlight(), ForestFlight()}) {
     for (const int scale : {1, 2}) {
@@ -64,7 +64,8 @@ TEST(MapAgreement, WhatItFreesOctomapFreesToo) {
   }
 }
 
-// With pixels that resolve everything only the way of counting hits is left: one wins here.
+// With pixels that resolve everything, the maps differ only in how they count hits: here one hit
+// wins.
 TEST(MapAgreement, AsOctomapInNinetyNineOfAHundredCellsWhereAllIsResolved) {
   for (const MapFlight& flight : {StraightTurnFlight(), ForestFlight()}) {
     for (const int scale : {1, 2}) {

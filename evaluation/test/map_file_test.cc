@@ -112,9 +112,9 @@ TEST_F(MapFile, WhatWasSeenIsKnownInTheNextFlight) {
   EXPECT_THAT(Files(), IsEmpty());  // nothing is left beside
 }
 
-// A map that octomap made: free space with a wall across the straight line to the pad, where the
-// world has none. It says where to go, not where nothing stands (docs/safety.md): with one depth image in all
-// the vehicle stays in what that showed; with a camera it lands.
+// A map that octomap made: free space with a wall across the straight line to the pad, where the world has none. It
+// guides the search but does not prove free space (docs/safety.md). With a single depth image the vehicle stays in what
+// that image showed; with a camera it lands.
 TEST_F(MapFile, AForeignMapIsNoObservation) {
   octomap::OcTree tree(0.1);
   for (int x = -20; x < 90; ++x) {

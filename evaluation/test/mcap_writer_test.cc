@@ -81,8 +81,8 @@ TEST(McapWriter, PutsItsRecordsInTheFormatsOrder) {
   EXPECT_EQ(file.substr(0, kMagicSize), kMagic);
   EXPECT_EQ(file.substr(file.size() - kMagicSize), kMagic);
   const std::vector<Record> records = SmallRecords(file);
-  // Header, metadata; a chunk with two indices, a chunk with one; end of data; schema, channels, statistics, chunk indices,
-  // metadata index, offsets of these five groups, footer.
+  // Header, metadata. A chunk with two indices, a chunk with one, end of data. Schema, channels, statistics, chunk
+  // indices, metadata index, offsets of these five groups, footer.
   EXPECT_THAT(OpsOf(records),
               ElementsAre(0x01, 0x0C, 0x06, 0x07, 0x07, 0x06, 0x07, 0x0F, 0x03, 0x04, 0x04, 0x0B,
                           0x08, 0x08, 0x0D, 0x0E, 0x0E, 0x0E, 0x0E, 0x0E, 0x02));
@@ -122,7 +122,7 @@ TEST(McapWriter, FindsMessagesByItsIndices) {
   const std::vector<Record> first = RecordsIn(records[2].content.substr(40));
   EXPECT_THAT(OpsOf(first), ElementsAre(0x03, 0x04, 0x04, 0x05, 0x05));
   EXPECT_THAT(OpsOf(RecordsIn(records[5].content.substr(40))), ElementsAre(0x05));
-  // Channel, sequence, both times, what was given.
+  // Channel, sequence, both times, the given bytes.
   EXPECT_EQ(first[3].content,
             std::string("\x01\0\0\0\0\0\x05\0\0\0\0\0\0\0\x05\0\0\0\0\0\0\0one", 25));
   // Of channel 0: one entry, its time and where the message begins.

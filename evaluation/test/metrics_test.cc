@@ -34,7 +34,7 @@ TEST(Metrics, FollowingIsOverTheLastTenSecondsAndNotLess) {
   pad.v_WP = {1.0, 0.0, 0.0};
   for (int i = 0; i < 1000; ++i) {
     const double t = 0.02 * i;
-    // 100 m away at first; then 0.3 m, once 0.5 m, at half a metre per second too slow.
+    // 100 m away at first. Then 0.3 m, once 0.5 m, and half a metre per second too slow.
     vehicle.p_WB = {t < 9.97 ? 100.0 : 0.0, i == 800 ? -0.5 : -0.3, 1.7};
     vehicle.v_WB = {0.5, 0.0, 0.0};
     metrics.Sample(t, vehicle, pad);
@@ -100,7 +100,7 @@ TEST(Metrics, ThePadIsComparedAsSeenFromTheVehicle) {
   estimation::PadState estimate, truth;
   estimate.cov_p = Eigen::Matrix2d::Identity() * 0.01;
   truth.p_WP = {5.0, 1.0, 0.3};
-  // The vehicle takes itself to be 3 m off, and so the pad; relative to it that errs by 0.1 m.
+  // The estimates of vehicle and pad are 3 m off. Relative to the vehicle the pad is off by 0.1 m.
   const Eigen::Vector3d own_error(3.0, 0.0, 0.5);
   estimate.p_WP = {8.0, 1.1, 0.3};
   metrics.Estimate(estimate, truth, own_error);

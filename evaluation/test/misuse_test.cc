@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a newcomer may do wrong with the public classes ends in a sentence that names it. Also run under sanitizers, where
-// a read out of bounds fails.
+// Mistakes of a newcomer with the public classes end in a sentence that names them. Also run under sanitizers, where a
+// read out of bounds fails.
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -247,7 +247,7 @@ TEST(Misuse, EndsInASentenceThatNamesIt) {
   }
 }
 
-// Questions at no time have no answer, and read nothing that is not there.
+// A question at a time that is not finite has no answer, and reads nothing out of bounds.
 TEST(Misuse, AReferenceAtNoTimeIsNoNumber) {
   planning::Replanner replanner = MakeReplanner([](auto*) {});
   replanner.CommitHover({1.0, 2.0, 3.0}, 0.0);

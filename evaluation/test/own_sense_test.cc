@@ -79,7 +79,7 @@ TEST(OwnSense, TheDefaultsAreThoseOfTheSensors) {
   EXPECT_EQ(config.imu.gyro_noise, defaults.imu.gyro_noise);
 }
 
-// What is known of a past time, and how far, with and without fixes.
+// The estimate at a past time and its uncertainty, with and without fixes.
 TEST(OwnSense, AnOutageIsTold) {
   const Scenario scenario = Shipped("open", {"own_state=estimated", "own.gps.outage=[1, 4]"});
   Stand(scenario, 5.0, [](int k, const auto& truth, const control::Onboard& onboard) {

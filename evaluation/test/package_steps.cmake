@@ -1,4 +1,5 @@
-# What the tests of packages begin with: functions, a fresh WORK_DIR, and an environment that names no other installation.
+# Shared beginning of the package tests: functions, a fresh WORK_DIR, and an environment that names no other
+# installation.
 # need(<variable>...): fails unless each was given with -D.
 function(need)
   foreach(name IN LISTS ARGN)

@@ -142,7 +142,7 @@ TEST_F(OracleVerdictsFile, IsRefusedWithItsLine) {
   EXPECT_FALSE(refused("slits,A,1,ppx"));
 }
 
-// The verdicts that are shipped are the oracle's, of the scenes that are drawn today.
+// The shipped verdicts are those of the oracle for the scenes that this build draws.
 TEST(OracleVerdicts, TheShippedOneSaysWhatTheOracleDoes) {
   const OracleVerdicts book = StandardOracleBook();
   for (const std::string& set : SceneSetNames()) {

@@ -61,7 +61,7 @@ double LowestFeet(const TrialRecord& record, const estimation::VehicleModel& mod
   return lowest;
 }
 
-// A vehicle that has not seen the tags turns away above the deck, by plans that are certified.
+// A vehicle that has not seen the tags turns away above the deck, by certified plans.
 TEST(PlannedLanding, WithoutTagsItStaysAboveThePadHoweverSeldomItPlans) {
   const std::vector<std::vector<std::string>> cases = {
       {}, {"planning.rate=5"}, {"planning.latency=90"}, {"planning.rate=1"}};

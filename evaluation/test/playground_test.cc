@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The planner in a page, without the page: questions and answers, and that they are the program's own.
+// The planner in a page, without the page: its answers are those of the program.
 #include <cmath>
 #include <string>
 
@@ -149,7 +149,8 @@ TEST(Playground, ImpossibleScenesAreToldInSentences) {
   EXPECT_NE(away["reason"], "none");
 }
 
-// A wall that is put into a flight's way is flown around, or stood before: never into, where it can be seen in time.
+// A wall that is put into a flight's way is flown around, or the vehicle stops before it. It never flies into a wall
+// that can be seen in time.
 TEST(Playground, AnObstacleMayComeDuringAFlight) {
   Playground playground;
   PlaygroundScene scene = FirstScene();
@@ -248,7 +249,7 @@ TEST(Playground, MistakesAreAnsweredWithASentence) {
   EXPECT_LT(in_scene(R"({"backend": ")" + std::string(1000000, 'x') + R"("})").size(), 200u);
 }
 
-// Not finite is no JSON, and a mangled text is no UTF-8: neither may end the page.
+// A number that is not finite is no JSON, and a damaged text is no UTF-8. Neither may end the page.
 TEST(Playground, AnswersAreAlwaysJson) {
   EXPECT_NO_THROW(Json::parse(Playground().Ask("\xff\xfe")));
   EXPECT_NO_THROW(Json::parse(Playground().Ask("{\"do\": \"\xff\"}")));

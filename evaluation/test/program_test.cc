@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The program as a library function, with a backend that is broken on purpose: what goes wrong in
-// flight is the program's fault and must not look like the user's.
+// The program as a library function, with a backend that is broken on purpose. A failure in flight
+// is the program's fault and must not look like the user's.
 #include "touchdown/evaluation/program/program.h"
 
 #include <filesystem>
@@ -64,7 +64,7 @@ TEST(Program, UnknownCommandsAreNamedAtEveryLevel) {
             HasSubstr("hostile")));
 }
 
-// Wherever a name is asked for that is one of several, a typo is told what it was to be, in one sentence.
+// Wherever a name is one of several, the message for a typo suggests the right one, in one sentence.
 TEST(Program, ATypoIsToldWhatWasMeant) {
   const std::filesystem::path folder = ::testing::TempDir();
   const auto file = [&folder](const char* name, const char* text) {

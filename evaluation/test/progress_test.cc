@@ -85,7 +85,7 @@ class Terminal {
   Terminal(const Terminal&) = delete;
   Terminal& operator=(const Terminal&) = delete;
 
-  /// What was written; it is no terminal any more.
+  /// The written text; it is no terminal any more.
   std::string Read() {
     dup2(was_, STDERR_FILENO);
     close(was_);

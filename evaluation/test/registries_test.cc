@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Entries that say something wrong of themselves end in a sentence, and what they make is there.
+// Faulty entries end in a sentence, and right ones can be used.
 #include "touchdown/evaluation/scenario/registries.h"
 
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What flights come to, held in bands that are no wider than twice the spread over seeds.
-// TOUCHDOWN_BANDS=print prints what the tables are to hold; a change that moves one says why.
+// Results of flights, within bands that are no wider than twice the spread over seeds.
+// TOUCHDOWN_BANDS=print prints the values for the tables. A change that moves one says why.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -21,12 +21,12 @@ namespace {
 
 constexpr int kSeeds = 6;
 
-/// By figure, what was measured of each seed.
+/// By figure, the measured value of each seed.
 using Samples = std::map<std::string, std::vector<double>>;
 
 double Median(const std::vector<double>& values) { return *Quantile(values, 0.5); }
 
-/// Each value lies in the spread over the seeds and half of it on either side. What all seeds do alike shows
+/// Each value lies in the spread over the seeds and half of it on either side. A common change of all seeds shows
 /// sooner: the median of the seeds' changes is at most an eighth of the spread.
 void ExpectInBands(const std::string& what, const Samples& samples, const Samples& before) {
   const char* asked = std::getenv("TOUCHDOWN_BANDS");
@@ -54,7 +54,7 @@ void ExpectInBands(const std::string& what, const Samples& samples, const Sample
   EXPECT_EQ(samples.size(), before.size()) << what;
 }
 
-/// Largest distance but for the worst twentieth, of the vehicle from what it was told to fly [m].
+/// Tracking error of the vehicle, 95 % quantile [m].
 double Tracking(const TrialRecord& record, double until) {
   std::vector<double> errors;
   for (const RecordSample& sample : record.samples) {

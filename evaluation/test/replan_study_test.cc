@@ -52,7 +52,7 @@ TEST(ReplanStudy, BothCheckersSeeAPlanThroughAnObstacle) {
         CheckPlan(planning::UniformBspline(points, 5.0, 0.0), scene, options.scenes.kind.limits);
     EXPECT_NEAR(row.length, (scene.target - scene.start.p).norm(), 1e-6);
     EXPECT_EQ(row.map_blocked, scene.straight_blocked) << index;
-    // A cell is at most its diagonal larger than what stands in it.
+    // A cell is at most its diagonal larger than the obstacle in it.
     if (row.truly_near) {
       EXPECT_TRUE(row.map_blocked) << index;
     } else if (row.map_blocked) {
@@ -66,7 +66,7 @@ TEST(ReplanStudy, BothCheckersSeeAPlanThroughAnObstacle) {
 TEST(ReplanStudy, LimitsAreLookedAtOnTheCurveItself) {
   const ReplanStudyOptions options = Options("B", 1);
   const ReplanScene scene = DrawReplanScene(options.scenes, 0);
-  planning::ControlPoints points(3, 8);  // at 1 m/s along x, but for a jump in the middle
+  planning::ControlPoints points(3, 8);  // at 1 m/s along x, with a jump in the middle
   for (int i = 0; i < 8; ++i) points.col(i) << scene.start.p.x() + i, scene.start.p.y(), 1.0;
   const auto check = [&](const planning::Limits& limits) {
     return CheckPlan(planning::UniformBspline(points, 1.0, 0.0), scene, limits).beyond_limits;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The page holds what the record holds: nothing is lost on the way but decimals.
+// The page holds what the record holds: only decimals are lost.
 #include "evaluation/page/replay_page.h"
 
 #include <zlib.h>

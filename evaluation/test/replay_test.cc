@@ -165,7 +165,7 @@ TEST_F(Replayed, ABadRecordIsRefusedInASentence) {
           "an unknown curve");
 }
 
-// What a record does not hold itself must be what it was in flight.
+// Data that a record does not hold must be unchanged since the flight.
 TEST_F(Replayed, OtherWaypointsThanInFlightAreRefused) {
   const std::string points = ::testing::TempDir() + "touchdown_replay_waypoints.csv";
   const auto write = [&points](const char* text) { std::ofstream(points) << text; };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// docs/record.md against the files that the program writes: every table and column, and every key of a
-// manifest that is not of the build, must be named in the section of that file's format.
+// Checks docs/record.md against the files that the program writes. The section of a file's format must name every
+// table, every column, and every key of its manifest except keys of the build.
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
@@ -28,7 +28,7 @@
 namespace touchdown::evaluation {
 namespace {
 
-/// What is to be found in one file: `writer` writes it with as little in it as can be.
+/// The expected content of one file. `writer` writes it with as little data as possible.
 struct ResultFile {
   const char* name;
   std::function<void(const std::string& path)> writer;
@@ -135,8 +135,8 @@ std::uint32_t Fingerprint(const std::vector<std::string>& texts) {
   return hash;
 }
 
-// A reader knows a format by its version alone: with other columns the version must be another one
-// too. A change of a table raises the format's version; both are entered here.
+// A reader knows a format only by its version. So other columns need another version. A change of a
+// table raises the format's version; both are entered here.
 TEST(ResultDocs, OtherColumnsAreAnotherVersion) {
   const std::map<std::string, std::string> known = {
       {"record", "19 3398539122"},      {"trials", "8 3477732655"},

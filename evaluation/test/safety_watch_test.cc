@@ -68,7 +68,7 @@ TEST(SafetyWatch, CountsStopsOnceAndEveryStepWithoutAProof) {
   EXPECT_EQ(watch.figures().uncertified_steps, 3);
 }
 
-// A margin that has grown since pays for nothing that was proven with a smaller one.
+// A margin that has grown since does not count for a pair that was proven with a smaller one.
 TEST(SafetyWatch, TheErrorCountsAgainstTheMarginsOfThePairThatIsFlown) {
   const sim::ObstacleField nothing;
   SafetyWatch watch(nothing);

@@ -325,7 +325,7 @@ TEST_F(ScenarioTest, ALatencyBeyondTheReplanningPeriodIsRefused) {
                     HasSubstr("not '60'")));
   EXPECT_THAT(Refusal("seed: 1\n", {"planning.latency=101"}),
               AllOf(HasSubstr("--set planning.latency=101"), HasSubstr("[0, 100] ms")));
-  // The rate is what was chosen: the latency has its default.
+  // The rate is the chosen value; the latency has its default.
   EXPECT_THAT(Refusal("seed: 1\nplanning: {rate: 100}\n"),
               AllOf(HasSubstr(path_ + ":2"), HasSubstr("[0, 10] ms"), HasSubstr("not '20'")));
   // A third of a second is 166.7 time steps: some steps follow each other after 166.

@@ -37,7 +37,7 @@ struct PadDetection {
   estimation::VehicleState vehicle;
 };
 
-/// What a sensor sees of a standing pad, from `height` above it and `aside` of it.
+/// The sensor's view of a standing pad, from `height` above it and `aside` of it.
 struct Watch {
   std::vector<PadDetection> detections;
   std::vector<double> arrivals;
@@ -233,7 +233,7 @@ TEST(SensingFlight, EveryFaultTakesEffectAndFastFlightsLandAllTheSame) {
                                                        {"depth.outage=[1, 2]"},
                                                        {"depth.latency_ms=60"}}) {
     seen.push_back(fly(fault));
-    // The empty field has nothing for the depth camera to err about but the pad vehicle itself.
+    // In the empty field only the pad vehicle itself can cause errors of the depth camera.
     if (fault[0].rfind("depth", 0) != 0) {
       EXPECT_NE(seen.back(), seen[0]) << fault[0];
     }
@@ -271,8 +271,8 @@ TEST(SensingFlight, WithoutADownwardCameraOnlyAShortRestIsBridged) {
   EXPECT_EQ(early.outcome, Outcome::kTimeout) << early.detail;
 }
 
-// No tag is ever seen, however good the GPS: the gate stays closed, the vehicle waits above it, in the
-// vertical style goes around, and never comes down.
+// No tag is ever seen, however good the GPS. So the gate stays closed and the vehicle waits above it. In the vertical
+// style it goes around. It never comes down.
 TEST(SensingFlight, WithoutTagsNothingDescendsBelowTheGate) {
   for (const char* style : {"descent=planned", "descent=vertical"}) {
     const Scenario scenario = Open({"camera.occlusion=0.9", "gps.sigma=0.01", "timeout=25", style});

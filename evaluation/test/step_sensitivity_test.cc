@@ -28,7 +28,7 @@ TEST(StepSensitivity, TellsTheConstantsThatDecideFromThoseThatDoNot) {
     EXPECT_GT(rows[i].steps, 2 * options.count);  // later steps, too
     EXPECT_GT(rows[i].mean_work, 0.0);
     decides += rows[i].changed > 0;
-    // No step of these is near a landing, nor in sight of what was not seen.
+    // None of these steps is near a landing or near unknown space.
     if (std::string(rows[i].constant->name) == "unseen_least") {
       EXPECT_EQ(rows[i].changed, 0);
       EXPECT_EQ(rows[i].mean_cost, 1.0);

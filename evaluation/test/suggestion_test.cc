@@ -40,7 +40,7 @@ TEST(Suggestion, OfDottedNamesOnePartIsMeantAndComparedAlone) {
   EXPECT_EQ(DidYouMean("pads.prediktion", names), " (did you mean pads.prediction?)");
   // The same group is asked first, though pad.rate is as near.
   EXPECT_EQ(DidYouMean("pad.rats", {"pat.rats", "pad.rate"}), " (did you mean pad.rate?)");
-  // What all of them begin with does not make them near, nor do two parts that are both a little wrong.
+  // A common beginning does not make names near, and neither do two parts that are both a little wrong.
   for (const char* word : {"solver.max", "planning.name", "wind.far", "pid.seed", "planing.rat",
                            "pad", "wind.gust", "wind.speed"}) {
     EXPECT_EQ(DidYouMean(word, names), "") << word;

@@ -149,7 +149,7 @@ TEST(SweepReport, EveryFigureStandsUnderItsOwnName) {
   row.trial.scenario.descent = DescentKind::kPlanned;
   EXPECT_EQ(SweepJson(campaign, {row})["summary"]["mean_abs_error_x_m"]["n"], 0);
   EXPECT_EQ(SweepText(campaign, {row}).find("last 5 s"), std::string::npos);
-  // Only what stands in the table is explained.
+  // Only contents of the table are explained.
   EXPECT_NE(SweepText(campaign, {row}).find("; T*: no flight"), std::string::npos);
   row.result.t_star_s.reset();
   const std::string text = SweepText(campaign, {row});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Flights that are to do something else than to land: they end when it is done, and not before.
+// Flights with another task than landing. They end when the task is done, and not before.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ Scenario Shipped(const std::string& name, const std::vector<std::string>& overri
   return LoadScenario(FindScenario(name), overrides, StandardRegistries());
 }
 
-// The baseline is told of a moving goal now and then, and is never near it.
+// The baseline learns of a moving goal only now and then, and never gets near it.
 TEST(TaskFlight, AGoalIsReachedStandingAndMoving) {
   constexpr const char* kStands = "go_to.velocity=[0,0,0]";
   for (const char* velocity : {kStands, "go_to.velocity=[0.4,-0.3,0.05]"}) {
@@ -30,7 +30,7 @@ TEST(TaskFlight, AGoalIsReachedStandingAndMoving) {
       ASSERT_EQ(result.outcome, Outcome::kArrived) << planner << ": " << result.detail;
       EXPECT_TRUE(result.succeeded());
       EXPECT_FALSE(result.t_star_s || result.following || result.touchdown);
-      // It was there for the second that was asked for, and the flight went on no longer.
+      // It was there for the requested second, and then the flight ended.
       const planning::MovingGoal goal = GoalOf(scenario);
       for (const RecordSample& sample : record.samples) {
         const double off = (sample.vehicle.p_WB - goal.At(sample.t).p_WP).norm();

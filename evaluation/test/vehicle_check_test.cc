@@ -68,7 +68,7 @@ TEST(VehicleCheck, AirframeFileCountsAfterTheScenario) {
   const VehicleCheck given = CheckVehicle(file, {"airframe.rotor_lag=0.02"}, StandardRegistries());
   EXPECT_EQ(given.model->rotor_lag_s, 0.02);
   EXPECT_EQ(given.model->rotor_drag.x(), 0.3);
-  // What is flown is the same, and its record says so.
+  // The flown vehicle is the same, and its record says so.
   const Scenario scenario = ParseScenario("vehicle: " + file, "s", "s", {}, StandardRegistries());
   EXPECT_EQ(scenario.airframe.rotor_lag, 0.05);
   EXPECT_THAT(DumpScenario(scenario), HasSubstr("rotor_lag: 0.05"));
@@ -92,7 +92,8 @@ TEST(VehicleCheck, AirframeFileIsReadAsScenariosAre) {
   EXPECT_THAT(refusal("- 1\n"), HasSubstr("airframe.yaml"));
 }
 
-// Cells that the hull nearly reaches were not given free: no stop was in free cells, and it never left its start.
+// Cells that the hull nearly reaches used not to be given as free. No stop was in free cells, and the vehicle never
+// left its start.
 TEST(VehicleCheck, LargeVehiclesLeaveTheirStart) {
   const VehicleCheck check = CheckVehicle(
       kVehicles + "hexa.xml", {"airframe.hull=[0.5, -0.06, 0.08]", "airframe.feet=[0.3, 0.16]"},

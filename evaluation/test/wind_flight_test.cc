@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whole flights in wind, and with vehicles that are not what their pilot thinks.
+// Whole flights in wind, and with vehicles that differ from the model of their onboard software.
 #include <algorithm>
 #include <cmath>
 
@@ -23,8 +23,8 @@ namespace {
 
 using Overrides = std::vector<std::string>;
 
-// Steady wind to the north over a pad that stands ahead of the start (what is straight below the camera does
-// not see, and the vehicle does not sink into it), or drives a circle there.
+// Steady wind to the north over a pad that stands ahead of the start or drives a circle there. It is ahead because the
+// camera does not see what is straight below, and the vehicle does not sink into the unseen.
 const Overrides kNorthWind = {"wind.direction_random=false", "wind.direction_deg=90"};
 const Overrides kAbovePad = {"task=follow", "follow.time=0", "pad.motion=static",
                              "pad.start=[3.0, 0.2]", "pad.prediction=oracle"};
@@ -58,8 +58,8 @@ std::string Refusal(const Overrides& overrides) {
   return "";
 }
 
-// In open sky, with a hull that is wide by its margins and a nose that the wind lifts, it stood for ever: cells in
-// front and below were never in the image.
+// In open sky, with a wide hull (its margins) and a nose that the wind lifts. The vehicle used to stand for ever,
+// because cells in front and below were never in the image.
 TEST(WindFlight, WhoDoesNotSeeTheWayForItsLeanLooksFromElsewhere) {
   const TrialResult result =
       Fly({"pad.motion=circle", "pad.heading_deg=-90", "pad.turn_rate=-0.07", "pad.speed=0.23",
@@ -77,7 +77,7 @@ TEST(WindFlight, SteadyWindLeavesNoSteadyError) {
   const TrialResult with = Fly(Join(kAbovePad, kNorthWind, wind));
   ASSERT_TRUE(with.following);
   EXPECT_LE(with.following->mean_error_m, 0.02);
-  // Against 4 N the position loop alone leaves 4 N / (m kp), and so does the paper's law.
+  // Against 4 N the position loop alone has an error of 4 N / (m kp), and so has the paper's law.
   const TrialResult without =
       Fly(Join(kAbovePad, kNorthWind, Join(wind, {"control.disturbance=false"})));
   ASSERT_TRUE(without.following);
@@ -115,7 +115,8 @@ TEST(WindFlight, TheLawLeansFartherThanStopsCountOn) {
   EXPECT_NEAR(options.problem.vehicle.stop_tilt_max, 45.0 * kDeg, 1e-12);
 }
 
-// What the farther lean is for: the vehicle is as light and the gusts are as strong as is promised.
+// The reason for the larger lean: the vehicle is as light, and the gusts are as strong, as the
+// limits allow.
 TEST(WindFlight, GustsDoNotBlowALightVehicleOffItsReference) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const TrialResult result =
@@ -229,7 +230,7 @@ TEST(WindFlight, GroundEffectAndWakeChangeTheFlightAndItLandsAllTheSame) {
   EXPECT_NE(plain.effort_n2s, both.effort_n2s);
 }
 
-// The air that the record holds is that which the physics was given: wind and wake, each by itself.
+// The recorded air is the input of the physics: wind and wake, each separately.
 TEST(WindFlight, TheWakeAloneIsInTheAirBehindThePad) {
   const Overrides overrides = Join(kNorthWind, {"wind.mean=6", "air.pad_wake=true"});
   const Scenario scenario = Open(overrides);
@@ -266,7 +267,7 @@ TEST(WindFlight, AGustComesWhenAndAsStrongAsTheScenarioSays) {
   EXPECT_NEAR(along(3.8), 2.0 + 5.0, 1e-2);  // its peak
   EXPECT_NEAR(along(5.0), 2.0, 1e-9);
   EXPECT_NEAR(along(7.8), 2.0 + 5.0, 1e-2);  // the next one's
-  // It pushes: the vehicle is driven off, to the north, more than it ever was before.
+  // The gust pushes the vehicle to the north, farther off than ever before.
   double before = 0.0, after = 0.0;
   for (const RecordSample& sample : record.samples) {
     const double off = sample.vehicle.p_WB.y() - sample.reference.p_WB.y();

@@ -65,7 +65,7 @@ TEST(WorkerProcess, SaysWhatItsWorkDiedOf) {
   EXPECT_EQ(left.text, "exit status 3 without a result");
 }
 
-// No caller catches what is thrown, although one could: this test's own framework.
+// No caller catches the exception, although one could: this test's own framework.
 TEST(WorkerProcess, AnExceptionIsADeath) {
   EXPECT_EQ(Ask([](int) -> std::string { throw 1; }).text, "signal 6 (Aborted)");
 }

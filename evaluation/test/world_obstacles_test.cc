@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Worlds from lists and files: what stands in them, what is refused and where, flights in them.
+// Worlds from lists and files: their obstacles, refusals with their place, and flights in them.
 #include "evaluation/scenario/world_obstacles.h"
 
 #include <cmath>
@@ -218,7 +218,7 @@ TEST_F(WorldObstacles, ATurnedBoxIsWhereItIs) {
   EXPECT_NEAR(HorizontalGap(ball, {3.0, 0.0}, {0.0, 0.0}, 0.0, 1.4, 1.0), 3.0 - 0.8, 1e-12);
 }
 
-// The hash tells whether a file is still what it was; a changed file is read anew.
+// The hash tells whether a file is unchanged. A changed file is read anew.
 TEST_F(WorldObstacles, AChangedFileIsAnotherWorld) {
   const std::string text = "obstacles: {meshes: [{file: " +
                            Write("one.obj", Obj({"1 3 2", "1 2 4", "2 3 4", "1 4 3"})) + "}]}\n";

@@ -11,8 +11,8 @@
 
 namespace touchdown::evaluation {
 
-/// What the vehicle's two cameras see, as the scenario has them: the downward one with the tags that are found, and the
-/// depth camera in colours. Always rendered, whatever `sensing` says.
+/// What the vehicle's two cameras see, as the scenario has them. The downward camera shows the tags that are found; the
+/// depth camera is in colours. Always rendered, whatever `sensing` says.
 class CameraInsets {
  public:
   /// @throws as sim::PadCamera and sim::RenderedDepthCamera do.

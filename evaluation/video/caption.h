@@ -18,7 +18,7 @@ struct Caption {
   std::string distance;  ///< to the pad, or goal
 };
 
-/// @param now at the time of the picture. @param t_next of the picture after it: what happens before is told [s].
+/// @param now at the time of the picture. @param t_next time of the picture after it: events before it are shown [s].
 /// @param target pad or goal.
 Caption CaptionOf(const RecordedFlight& flight, const FlightTrack& track, const TrackSample& now,
                   double t_next, const Eigen::Vector3d& target_W);

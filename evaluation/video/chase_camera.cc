@@ -106,7 +106,7 @@ class Chase {
     return u > frame_.left && u < frame_.right && v > frame_.top && v < frame_.bottom;
   }
 
-  // The share of a thing that is out of the frame or hidden: of its middle and its ends to both sides.
+  // The share of a thing that is out of the frame or hidden, by its middle and its ends on both sides.
   double Missing(const sim::CameraPose& pose, const Eigen::Vector3d& p_W, double size) const {
     int missing = 0;
     for (const double side : {-1.0, 0.0, 1.0}) {
@@ -122,7 +122,7 @@ class Chase {
   ChaseFrame frame_;
 };
 
-// What it costs to go from one view to another within kKeyTime.
+// The cost of going from one view to another within kKeyTime.
 double MoveCost(const View& a, const View& b) {
   const double turn = estimation::WrapAngle(b.azimuth - a.azimuth);
   const double climb = b.elevation - a.elevation;
@@ -169,7 +169,7 @@ std::vector<View> PlanViews(const std::vector<ChaseSubject>& keys, const Chase& 
   return chosen;
 }
 
-// Each the mean of what is around it; beyond the ends it goes on as it began, so that the ends do not lag.
+// Each becomes the mean of its neighbourhood. Beyond the ends it is continued, so that the ends do not lag.
 template <typename Vector>
 std::vector<Vector> Smoothed(const std::vector<Vector>& rows, double time, double dt) {
   const int reach = static_cast<int>(3.0 * time / dt);

@@ -22,8 +22,8 @@ struct ChaseFrame {
   double left = 0.06, right = 0.72, top = 0.08, bottom = 0.84;
 };
 
-/// Where a chase camera is in each picture of a flight: behind and above the vehicle, with vehicle and target in the
-/// frame. Where obstacles hide them it looks from elsewhere; it keeps away from obstacles and moves smoothly.
+/// The chase camera's place in each picture of a flight: behind and above the vehicle, with vehicle and target in the
+/// frame. Where obstacles hide them it looks from elsewhere. It keeps away from obstacles and moves smoothly.
 /// @param dt from one picture to the next [s].
 std::vector<sim::CameraPose> ChaseFlight(const std::vector<ChaseSubject>& subjects, double dt,
                                          const sim::ObstacleField& obstacles,

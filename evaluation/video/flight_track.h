@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a record says of how a flight went, for one who looks on.
+// A recorded flight over time, for one who watches it.
 #pragma once
 
 #include <optional>
@@ -17,17 +17,17 @@ struct TrackSample {
   estimation::PadState pad;
 };
 
-/// The pad as it was believed to be at one time, with the covariance of its place.
+/// The estimated pad at one time, with the covariance of its place.
 struct TrackBelief {
   double t = 0.0;  ///< [s]
   estimation::PadState pad;
 };
 
-/// What the record has of a sample beside the true states.
+/// The record's other data of a sample beside the true states.
 struct TrackFigures {
   Eigen::Vector3d p_believed_WB =
       Eigen::Vector3d::Zero();  ///< where the vehicle believed to be [m]
-  Eigen::Vector3d p_reference_WB = Eigen::Vector3d::Zero();  ///< what it tracked [m]
+  Eigen::Vector3d p_reference_WB = Eigen::Vector3d::Zero();  ///< its reference [m]
   Eigen::Vector3d v_air_W = Eigen::Vector3d::Zero();         ///< at the vehicle [m/s]
   std::vector<double> thrusts;                               ///< of the rotors [N]
   std::string mode;
@@ -58,7 +58,7 @@ class FlightTrack {
   /// The samples themselves, and what else the record has of each.
   const std::vector<TrackSample>& samples() const { return samples_; }
   const std::vector<TrackFigures>& figures() const { return figures_; }
-  /// What was believed of the pad, from when on anything was; at times of samples.
+  /// The estimated pad, from the first estimate on; at times of samples.
   const std::vector<TrackBelief>& beliefs() const { return beliefs_; }
   /// All that happened, in order.
   const std::vector<TrackEvent>& events() const { return events_; }

@@ -41,8 +41,8 @@ class FlightPictures {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Makes sure before a long run that WriteVideo will be able to write there: the name, which must end in .mp4, the place, the program
-/// ffmpeg, off-screen rendering. @throws BadInput
+/// Checks before a long run that WriteVideo will be able to write: the name (it must end in .mp4), the place, the
+/// program ffmpeg, and off-screen rendering. @throws BadInput
 void CheckVideo(const std::string& option, const std::string& path);
 
 /// The same for what is to be flown: whether it can be drawn. @throws BadInput
@@ -50,8 +50,8 @@ void CheckVideo(const std::string& option, const std::string& path, const Scenar
 
 using VideoProgress = std::function<void(int done, int all)>;
 
-/// Makes a video of a record. It appears whole or not at all. `progress`, where it is not empty, is told how many of the
-/// pictures have been made; what it throws, if it is no std::exception, ends the work.
+/// Makes a video of a record. It appears whole or not at all. `progress`, if not empty, gets the number of finished
+/// pictures. If it throws something that is no std::exception, the work ends.
 /// @throws BadInput as FlightPictures, std::runtime_error with one sentence.
 void WriteVideo(const std::string& record_path, const std::string& video_path,
                 const Registries& registries, const VideoProgress& progress, VideoSize size = {});

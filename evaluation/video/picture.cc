@@ -68,7 +68,7 @@ void Picture::SmoothEdges() {
       const Eigen::Vector3d near = 0.5 * (at(-1.0 / 6.0) + at(1.0 / 6.0));
       const Eigen::Vector3d far = 0.5 * near + 0.25 * (at(-0.5) + at(0.5));
       const double luma = LumaOf(far);
-      // What is brighter or darker than all around is of another thing.
+      // A pixel that is brighter or darker than all around belongs to another thing.
       const Eigen::Vector3d mixed = luma < low || luma > high ? near : far;
       std::uint8_t* const pixel = rgb.data() + 3 * (static_cast<std::size_t>(y) * width + x);
       for (int c = 0; c < 3; ++c) pixel[c] = static_cast<std::uint8_t>(std::lround(mixed[c]));

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The program gets a socket as its standard input: unlike a pipe, writing to one whose other end is gone can be told not to
-// raise a signal. What it says goes to a file in memory, so that it never waits for a reader, nor for room on a full disk. It
-// is spawned, not forked: the rasteriser has threads. It is not in this process's group: a keyboard's signals are for this one,
-// which then ends it.
+// The program gets a socket as its standard input. Unlike with a pipe, a write to a socket whose other end is gone can
+// be told not to raise a signal. The program's output goes to a file in memory, so it never waits for a reader, nor for
+// room on a full disk. It is spawned, not forked, because the rasteriser has threads. It is not in this process's
+// group: a keyboard's signals are for this process, which then ends it.
 #include "evaluation/video/video_encoder.h"
 
 #include <array>
@@ -32,8 +32,8 @@ constexpr char kEncoder[] = "ffmpeg";
 // Names that begin with a dash or look like a protocol are no options or addresses.
 std::string FileWord(const std::string& path) { return "file:" + path; }
 
-// The same file, not among the three standard ones: those may be closed here, and are the program's to be replaced. The program
-// does not get it by itself.
+// The same file, but not as one of the three standard descriptors. These may be closed here, and the program replaces
+// them. The program does not get it by itself.
 int BehindStandard(int descriptor) {
   if (descriptor < 0) return -1;
   const int behind = fcntl(descriptor, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
@@ -114,7 +114,8 @@ void VideoEncoder::Add(const std::vector<std::uint8_t>& rgb) {
 void VideoEncoder::Finish() {
   if (empty_) throw std::runtime_error("there is no picture to be shown");
   Wait();
-  // Of a file's last part that could not be written the program may speak only, and end well.
+  // If a file's last part cannot be written, the program may only print that and still end with
+  // success.
   if (status_ != 0 || !LastWords().empty()) Fail();
   std::error_code error;
   if (std::filesystem::file_size(path_, error) > 0 && !error) return;

@@ -11,8 +11,8 @@
 
 namespace touchdown::evaluation {
 
-/// Whether there is a program ffmpeg on PATH. @throws BadInput naming what needs it and the package. @param who as the
-/// sentence shall name it.
+/// Checks that there is a program ffmpeg on PATH. @throws BadInput naming the part that needs it and the package.
+/// @param who that part, for the sentence.
 void RequireEncoder(const std::string& who);
 
 /// Writes an MP4 file, H.264, of raw pictures, by the program ffmpeg. A child process, which ends with this.

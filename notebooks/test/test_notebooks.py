@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What is committed: valid notebooks with cell ids, without outputs, listed where they are executed."""
+"""Checks the committed notebooks: valid, with cell ids, without outputs, and listed where they are executed."""
 import re
 from pathlib import Path
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The pages of docs/notebooks: of the notebooks as they are, small, and without a word of where they were made."""
+"""Checks the pages of docs/notebooks: made from the current notebooks, small, and without the place of their making."""
 import base64
 import io
 import re
@@ -66,7 +66,7 @@ def test_a_page_does_not_say_where_it_was_made(page):
 
 
 def png_of_noise(height, width, noisy=300):
-    """White, but for so many columns."""
+    """White, except for so many columns."""
     pixels = np.full((height, width, 3), 255, dtype=np.uint8)
     pixels[:, :noisy] = np.random.default_rng(1).integers(0, 255, (height, noisy, 3))
     png = io.BytesIO()

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Dryden turbulence: US Military Specification MIL-F-8785C (1980), section 3.7.2 and the
-// low-altitude model of 3.7.3.4. With L_w = h, L_u = L_v = h / (0.177 + 0.000823 h)^1.2 and
-// sigma_w / sigma_u = (0.177 + 0.000823 h)^0.4 (h in feet), and tau = L / V, the shaping filters are
+// low-altitude model of 3.7.3.4. With h in feet:
+//   L_w = h,  L_u = L_v = h / (0.177 + 0.000823 h)^1.2,  sigma_w / sigma_u = (0.177 + 0.000823 h)^0.4.
+// With tau = L / V, the shaping filters are
 //   H_u = sigma_u sqrt(2 tau) / (1 + tau s),
 //   H_v = sigma_v sqrt(tau) (1 + sqrt(3) tau s) / (1 + tau s)^2, and H_w likewise,
 // driven by white noise of unit intensity.
 //
-// They are discretised exactly. In the time s = t / tau, which is without dimension, the
-// second-order filter is x1' = -x1 + n, x2' = x1 - x2, y = sqrt(3) x1 + (1 - sqrt(3)) x2, whatever
-// tau is: its stationary covariance is P = [1/2 1/4; 1/4 1/4], and y has variance 1. Over d = dt/tau
-// the state goes through F = e^-d [1 0; d 1] and gains noise of covariance P - F P F^T. With
-// p(n) = 1 - e^-2d sum_{k<n} (2d)^k / k! that is [p(1)/2 p(2)/4; p(2)/4 p(3)/4]; p is summed from
-// its upper end, where nothing cancels however small d is. So variance and spectrum are right for
-// every step length, and stay so while V and h change.
+// They are discretised exactly. In the dimensionless time s = t / tau the second-order filter does not depend on tau:
+//   x1' = -x1 + n,  x2' = x1 - x2,  y = sqrt(3) x1 + (1 - sqrt(3)) x2.
+// Its stationary covariance is P = [1/2 1/4; 1/4 1/4], and y has variance 1. Over d = dt/tau the state goes through F =
+// e^-d [1 0; d 1] and gains noise of covariance P - F P F^T. With p(n) = 1 - e^-2d sum_{k<n} (2d)^k / k! this is
+// [p(1)/2 p(2)/4; p(2)/4 p(3)/4]. p is summed from its upper end, where nothing cancels even for a small d. So variance
+// and spectrum are right for every step length, and stay so while V and h change.
 
 #include "sim/air/dryden.h"
 

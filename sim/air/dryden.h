@@ -27,9 +27,9 @@ class DrydenTurbulence {
   /// `seed` feeds the stream "turbulence".
   explicit DrydenTurbulence(std::uint64_t seed);
 
-  /// The air's velocity at the end of the next `dt` > 0 [s] along x the mean wind, y to its left,
-  /// z up; multiply by the standard deviation [m/s]. `airspeed` > 0 [m/s] and `height` [m] are held
-  /// over dt. Does not allocate.
+  /// The air's velocity at the end of the next `dt` > 0 [s]: x along the mean wind, y to its left,
+  /// z up. Multiply it by the standard deviation [m/s]. `airspeed` > 0 [m/s] and `height` [m] are
+  /// held over dt. Does not allocate.
   Eigen::Vector3d Step(double dt, double airspeed, double height);
 
  private:

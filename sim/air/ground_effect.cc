@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// I. C. Cheeseman, W. E. Bennett, "The effect of the ground on a helicopter rotor in forward
-// flight", ARC R&M 3021, 1955: T / T_far = 1 / (1 - (R / 4z)^2 / (1 + (V / v_i)^2)), with the induced
-// velocity at hover v_i = sqrt(T_far / (2 rho pi R^2)). A rotor's image below the ground slows the
-// inflow; forward speed carries the image's flow away. They validate it from z = R/2 on. Each rotor
-// counts alone: what quadrotors gain beyond that between their rotors (P. Sanchez-Cuevas, G. Heredia,
-// A. Ollero, Int. J. Aerospace Eng. 2017) is left out.
+// I. C. Cheeseman, W. E. Bennett, "The effect of the ground on a helicopter rotor in forward flight", ARC R&M 3021,
+// 1955:
+//   T / T_far = 1 / (1 - (R / 4z)^2 / (1 + (V / v_i)^2)),
+// with the induced velocity at hover v_i = sqrt(T_far / (2 rho pi R^2)). A rotor's image below the ground slows the
+// inflow; forward speed carries the image's flow away. They validate it from z = R/2 on. Each rotor counts alone: what
+// quadrotors gain beyond that between their rotors (P. Sanchez-Cuevas, G. Heredia, A. Ollero, Int. J. Aerospace Eng.
+// 2017) is left out.
 
 #include "sim/air/ground_effect.h"
 
@@ -18,7 +19,7 @@
 namespace touchdown::sim {
 namespace {
 
-// Of a point above what lies below it, the deck or the ground [m].
+// Height of a point above the deck or the ground below it [m].
 double HeightAbove(const Box& deck, const Eigen::Vector3d& p_W) {
   const Eigen::Vector3d p =
       Eigen::AngleAxisd(-deck.yaw, Eigen::Vector3d::UnitZ()) * (p_W - deck.center);

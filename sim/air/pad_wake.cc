@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Gaussian wake: M. Bastankhah, F. Porte-Agel, "A new analytical model for wind-turbine wakes",
-// Renewable Energy 70, 2014, which follows from conservation of momentum for any body of
-// thrust or drag coefficient C and diameter d. At x downstream of the body, in a flow of speed U,
+// Gaussian wake: M. Bastankhah, F. Porte-Agel, "A new analytical model for wind-turbine wakes", Renewable Energy 70,
+// 2014. It follows from conservation of momentum for any body of thrust or drag coefficient C and diameter d. At x
+// downstream of the body, in a flow of speed U,
 //   dU / U = (1 - sqrt(1 - C / (8 s^2))) exp(-r^2 / (2 s^2 d^2)),   s = k x / d + e,
-// with k = 0.05 (a rough boundary layer) and e = 0.35, at which the root is real for C <= 0.98. The
-// body is the box under the deck with the board, as a disc of the same frontal area; C = 0.9 is that
-// of a blunt ground vehicle. The wake grows over the first diameter, so that nothing jumps. The deck's own boundary layer and its separation are left out.
+// with k = 0.05 (a rough boundary layer) and e = 0.35. With these the root is real for C <= 0.98. The body is the box
+// under the deck and the board, as a disc of the same frontal area. C = 0.9 is that of a blunt ground vehicle. The wake
+// grows over the first diameter, so that nothing jumps. The deck's own boundary layer and its separation are left out.
 
 #include "sim/air/pad_wake.h"
 
@@ -25,7 +25,7 @@ constexpr double kLeastFlow = 1e-6;  // [m/s]
 
 Eigen::Vector3d PadWake(const PadGeometry& geometry, const estimation::PadState& pad,
                         const Eigen::Vector3d& wind_W, const Eigen::Vector3d& p_W) {
-  // The pad vehicle stands in this flow; only its horizontal part makes a wake.
+  // The flow around the pad vehicle. Only the horizontal part makes a wake.
   const Eigen::Vector2d flow = (wind_W - pad.v_WP).head<2>();
   const double speed = flow.norm();
   if (speed < kLeastFlow) return Eigen::Vector3d::Zero();

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The air's velocity at one point, the vehicle's: the field is frozen and blows past it (Taylor's
-// hypothesis), so that turbulence is coloured by the airspeed. A hovering vehicle has the wind's; it
-// is not let below 1 m/s, where the hypothesis ends. Gusts have the shape (1 - cos)/2 of the
-// discrete gust of MIL-F-8785C, 3.7.1.3, and of CS-25.341, from rise to fall.
+// The air's velocity at the vehicle's position. The turbulence field is frozen and blows past the vehicle (Taylor's
+// hypothesis), so the airspeed sets the spectrum in time. For a hovering vehicle the airspeed is the wind's; it is
+// never taken below 1 m/s, where the hypothesis ends. Gusts have the shape (1 - cos)/2 of the discrete gust of
+// MIL-F-8785C, 3.7.1.3, and of CS-25.341, from rise to fall.
 
 #include "sim/air/wind.h"
 

@@ -25,10 +25,9 @@ struct WindConfig {
   } gust;
 };
 
-/// Velocity of the air at the vehicle: mean, Dryden turbulence, gusts. The standard deviation of
-/// the horizontal turbulence is (max - mean) / 2, and the sum of mean and turbulence is shortened to
-/// `max` where it is longer. The same seed and flight give the same bits. Not to be shared between
-/// threads.
+/// Velocity of the air at the vehicle: mean, Dryden turbulence, gusts. The standard deviation of the horizontal
+/// turbulence is (max - mean) / 2. The sum of mean and turbulence is shortened to `max` where it is longer. The same
+/// seed and flight give the same bits. Not to be shared between threads.
 class Wind {
  public:
   /// Throws std::invalid_argument naming the key, its value and the allowed range.

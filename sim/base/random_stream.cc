@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// mt19937_64 seeded through std::seed_seq (whose mixing the standard fixes) from the 64 bits of the
-// seed and the 64-bit FNV-1a hash of the name, so that near seeds and similar names give unrelated
-// streams. Uniform draws take the upper 53 bits; normal draws are Marsaglia's polar method, one of
-// its pair kept. Both are written out because the standard leaves its distributions' algorithms
-// open.
+// mt19937_64, seeded through std::seed_seq, whose mixing the standard fixes. The seed sequence gets
+// the 64 bits of the seed and the 64-bit FNV-1a hash of the name. So near seeds and similar names
+// give unrelated streams. Uniform draws take the upper 53 bits. Normal draws use Marsaglia's polar
+// method and keep the second of each pair. Both are written out because the standard does not fix
+// the algorithms of its distributions.
 
 #include "sim/base/random_stream.h"
 

@@ -9,8 +9,8 @@
 
 namespace touchdown::sim {
 
-/// A random generator of its own for each purpose ("world", "start", "pad", "gps", ...), seeded
-/// from the trial's seed and the purpose's name: drawing more or less from one never shifts
+/// A separate random generator for each purpose ("world", "start", "pad", "gps", ...). It is seeded
+/// from the trial's seed and the purpose's name, so more or fewer draws from one never shift
 /// another. The same (seed, name) gives the same draws. Not to be shared between threads.
 class RandomStream {
  public:

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// MuJoCo 2.2.2 calls mju_user_error on a fatal error. Ours jumps to the scope that is open on this thread. Where none is,
-// the handler that was there is asked, as without us; if there was none the error is printed and ends the process, as it
-// does in MuJoCo, which writes a log file and waits for a key besides. Warnings within a scope are counted in mjData
-// and else ignored; beyond they go to their handler.
+// MuJoCo 2.2.2 calls mju_user_error on a fatal error. Ours jumps to the scope that is open on this thread. Without a
+// scope it calls the handler that was installed before. If there was none, it prints the error and ends the process.
+// MuJoCo's default does the same, but also writes a log file and waits for a key. Warnings within a scope are counted
+// in mjData and otherwise ignored. Warnings outside of a scope go to the handler that was installed before.
 
 #include "sim/mujoco/mujoco_call.h"
 

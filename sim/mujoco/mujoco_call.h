@@ -27,9 +27,9 @@ class MujocoErrorScope {
   MujocoErrorScope* outer_;
 };
 
-/// Runs `call`, which calls functions of MuJoCo, and throws its fatal errors (mju_error) as std::runtime_error from here: no
-/// exception passes through frames of C. What lies between is left without clean-up, so that `call` must
-/// hold nothing but such calls. The mjData that they worked on is not usable after an error.
+/// Runs `call`, which calls functions of MuJoCo, and throws its fatal errors (mju_error) as std::runtime_error from
+/// here. No exception passes through frames of C. The frames in between get no clean-up, so `call` must hold nothing
+/// but such calls. The mjData that they worked on is not usable after an error.
 template <class Call>
 void CallMujoco(const Call& call) {
   MujocoErrorScope scope;

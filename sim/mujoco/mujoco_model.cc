@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Ownership of MuJoCo 2.2.2's C structures.
 //
-// mj_loadXML reports what is wrong with a model in its message; only where memory runs out does it leave by an error, and
-// then what its C++ parts hold is lost. It keeps the model parsed last in a global, hence the lock. mjVFS is megabytes large,
-// hence the heap; the text in it is freed by mj_deleteVFS, so it is allocated by mju_malloc.
+// mj_loadXML reports a faulty model in its message. Only when memory runs out does it leave by an error; what its C++
+// parts hold is then lost. It keeps the model parsed last in a global, so it is locked. mjVFS is megabytes large, so it
+// is on the heap. mj_deleteVFS frees the text in it, so the text is allocated by mju_malloc.
 
 #include "sim/mujoco/mujoco_model.h"
 

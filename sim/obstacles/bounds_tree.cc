@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Halved at the median of the centres along the longest side, until few are left. A little wider than what they hold:
-// a rounding must not lose what just touches.
+// Halved at the median of the centres along the longest side, until few are left. The bounds are a little wider than
+// their content, so that rounding does not lose what just touches.
 #include "sim/obstacles/bounds_tree.h"
 
 #include <numeric>

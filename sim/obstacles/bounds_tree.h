@@ -18,9 +18,8 @@ struct Bounds {
   Eigen::Vector3d max;
 };
 
-/// Many things by their bounds, in a tree of bounds: what a point is near to, what a ray may meet, what lies in a
-/// place, each in about the logarithm of their number. A visitor gets a thing's index; what it finds ends the search
-/// the sooner. No search allocates.
+/// A tree of axis-aligned bounds. It finds the things near a point, along a ray or within bounds, each in time about
+/// logarithmic in their number. A visitor gets a thing's index; what it finds shortens the search. No search allocates.
 class BoundsTree {
  public:
   BoundsTree() = default;
@@ -84,7 +83,7 @@ class BoundsTree {
       }
       return gap;
     };
-    double touching = std::numeric_limits<double>::min();  // a gap of nothing is no gap
+    double touching = std::numeric_limits<double>::min();  // a gap of zero width is no gap
     Search(apart, &touching, visit);
   }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Cells in a row along x are one bar, bars of the same length side by side along y one plate, plates of the same shape
-// one above the other one box: each step joins what follows it in order.
+// Cells in a row along x become one bar. Bars of the same length side by side along y become one plate. Plates of the
+// same shape one above the other become one box. Each step joins what follows it in order.
 #include <algorithm>
 #include <tuple>
 

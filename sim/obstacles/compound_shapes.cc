@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Piece by piece: a column is an axis-aligned box, a side of a ring a capsule. These shapes are
-// asked while scenes are drawn and checked, never in a flight, so no search structure is kept.
+// used while scenes are drawn and checked, never in a flight. So there is no search structure.
 
 #include "sim/obstacles/compound_shapes.h"
 

@@ -17,7 +17,7 @@
 namespace touchdown::sim {
 namespace {
 
-/// FCL has every object compute its shape's bounds anew: of a model that several have, once and before it is shared.
+/// In FCL every object computes its shape's bounds anew. For a shared model this happens once, before it is shared.
 class Model : public fcl::BVHModel<fcl::OBBRSSd> {
  public:
   void computeLocalAABB() override {
@@ -29,7 +29,7 @@ class Model : public fcl::BVHModel<fcl::OBBRSSd> {
   bool bounded_ = false;
 };
 
-// Made once for a surface as long as it is held: checks, touches and clearances of many flights ask for it.
+// Made once for a surface while it is held, because checks, touches and clearances of many flights use it.
 std::shared_ptr<fcl::CollisionGeometryd> ModelOf(
     const std::shared_ptr<const TriangleMesh>& surface) {
   using Surface = std::weak_ptr<const TriangleMesh>;

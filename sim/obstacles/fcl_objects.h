@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// FCL's headers are heavy: for the few sources that ask it.
+// FCL's headers are heavy. Only the few sources that use FCL include this.
 #pragma once
 
 #include <memory>
@@ -32,7 +32,7 @@ class FclObstacles {
 std::shared_ptr<fcl::CollisionGeometryd> FclSurface(const std::vector<Eigen::Vector3d>& corners,
                                                     const std::vector<Eigen::Vector3i>& triangles);
 
-/// Of a pair of which one is an obstacle's: that obstacle's index.
+/// The index of the obstacle of the pair; one of the two objects is an obstacle's.
 int ObstacleOf(const FclObject& a, const FclObject& b);
 
 }  // namespace touchdown::sim

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pillars by dart throwing: uniform centres, one too near to an earlier pillar or to a keep-out is
-// drawn again. Scene kinds after the published measurements of EGO-Planner (Zhou et al. 2020) in
-// the random forests of its simulator.
+// Pillars by dart throwing: centres are uniform. A centre too near to an earlier pillar or to a
+// keep-out is drawn again. Scene kinds after the published measurements of EGO-Planner (Zhou et al.
+// 2020) in the random forests of its simulator.
 
 #include "sim/obstacles/forest.h"
 

@@ -39,22 +39,22 @@ struct ForestConfig {
 };
 
 /// The kinds of scenes EGO-Planner was measured in (simulator.xml's forest, a 40 x 40 x 3 m map):
-/// A: 200 ragged pillars and 200 rings; B: 200 pillars; C: 400 pillars; D: as B (with larger
-/// inflation, which is the map's matter). `walls`: 60 walls with gaps. `dense`: 0.5 pillars per
-/// square metre, at least 0.9 m apart.
+/// - A: 200 ragged pillars and 200 rings.
+/// - B: 200 pillars. C: 400 pillars. D: as B; the map has a larger inflation.
+/// - `walls`: 60 walls with gaps. `dense`: 0.5 pillars per square metre, at least 0.9 m apart.
 /// Throws std::invalid_argument naming the known kinds.
 ForestConfig ForestOfKind(const std::string& kind);
 const std::vector<std::string>& ForestKinds();
 
-/// Sets the number of pillars to `density` per square metre, in [0, 0.5], and their spacing to
-/// min(1.2 m, 0.64 / sqrt(density)): at 0.5 /m^2 pillars 1.2 m apart would not fit.
+/// Sets the number of pillars to `density` per square metre, in [0, 0.5]. Sets their spacing to
+/// min(1.2 m, 0.64 / sqrt(density)), because at 0.5 /m^2 pillars 1.2 m apart would not fit.
 void SetDensity(double density, ForestConfig* config);
 
 /// Draws the forest. The same (config, seed) gives the same obstacles; each kind of draw has its own random stream.
-/// - A pillar has width w = U(0.5, 0.7) m, scale s = U(0.5, 1.5) and radius w s / 2 around its centre, which is snapped
-///   to the middle of a cell.
-/// - A ring has its centre at a height of U(0.7, 0.8) m and half axes U(0.5, 0.7) m (horizontal) and U(0.7, 1.2) m
-///   (vertical), and is turned by U(-0.5, 0.5) rad.
+/// - A pillar has width w = U(0.5, 0.7) m, scale s = U(0.5, 1.5) and radius w s / 2. Its centre is snapped to the
+///   middle of a cell.
+/// - A ring has its centre at a height of U(0.7, 0.8) m. Its half axes are U(0.5, 0.7) m (horizontal) and U(0.7, 1.2) m
+///   (vertical). It is turned by U(-0.5, 0.5) rad.
 /// Throws std::invalid_argument naming a value out of range, or if the pillars do not fit.
 ObstacleField MakeForest(const ForestConfig& config, std::uint64_t seed);
 

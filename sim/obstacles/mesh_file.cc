@@ -28,7 +28,7 @@ std::vector<Obstacle> ObstaclesOfMeshFile(const std::string& path, double scale,
   // What its name does not hold could change unseen.
   if (path.ends_with(".gltf")) RefuseFile(path, "it keeps its mesh in another file; allowed is .glb");
   Assimp::Importer importer;
-  // The parts of a scene where they stand, each polygon in triangles; points and lines are no solids.
+  // The parts of a scene at their places, each polygon in triangles. Points and lines are left out: they are no solids.
   const aiScene* scene =
       importer.ReadFile(path, aiProcess_ValidateDataStructure | aiProcess_Triangulate |
                                   aiProcess_PreTransformVertices);

@@ -27,7 +27,7 @@ int RootOf(int thing, std::vector<int>* parents) {
   return thing;
 }
 
-// A triangle at an edge: which way it runs along it, and where it lies about it.
+// A triangle at an edge: its direction along the edge, and its angle about it.
 struct Side {
   int triangle = 0;
   bool forth = false;  // from the edge's lower corner to the higher one
@@ -53,7 +53,7 @@ std::map<Edge, std::vector<Side>> SidesOfEdges(const std::vector<Eigen::Vector3d
   return edges;
 }
 
-// Where two solids touch face to face, the one ends before the other begins.
+// Where two solids touch face to face, one ends before the other begins.
 void SortAbout(std::vector<Side>* sides) {
   constexpr double kSame = 1e-6;  // angles of faces in one plane [rad]
   const auto grid = [](const Side& side) {
@@ -218,7 +218,7 @@ std::vector<TriangleMesh> SolidsOf(const std::vector<Eigen::Vector3d>& corners,
     }
     meshes.emplace_back(std::move(solid.corners), std::move(solid.triangles));
   }
-  // A surface that looks inward within another one is a cavity; elsewhere it is turned the wrong way.
+  // A surface that faces inwards is a cavity if it is within another one. Elsewhere it is turned the wrong way.
   for (const auto& [corner, index] : inward) {
     for (std::size_t i = 0; i < meshes.size(); ++i) {
       if (i == index || meshes[i].SignedDistance(corner) >= 0.0) continue;

@@ -19,8 +19,8 @@ struct HeightGrid {
   std::vector<double> heights;  ///< [row * columns + column] [m]; row 0 is at the greatest y, column 0 at the least x
 };
 
-/// The ground that such heights make, as a solid: `size` along x and y [m], about the origin of its frame, with sides
-/// down to `thickness` below the lowest height.
+/// The ground with these heights as a solid, about the origin of its frame. `size` is along x and y [m]. Its sides
+/// reach down to `thickness` below the lowest height.
 /// @throws std::invalid_argument naming what is out of its range.
 TriangleMesh HeightFieldMesh(const HeightGrid& grid, const Eigen::Vector2d& size, double thickness,
                              const Placement& placement);

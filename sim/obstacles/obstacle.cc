@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Distances and rays for boxes, cylinders and spheres (compound_shapes.cc and triangle_mesh.cc have the others), each in the obstacle's own frame, where a box is
-// axis-aligned and a cylinder is a rectangle in (radius, z). The signed distance to a rectangle or
-// box of half extents h at a point p is |max(q, 0)| + min(max_i q_i, 0) with q = |p| - h.
+// Distances and rays for boxes, cylinders and spheres, each in the obstacle's own frame. compound_shapes.cc and
+// triangle_mesh.cc have the others. In its frame a box is axis-aligned and a cylinder is a rectangle in (radius, z).
+// The signed distance to a rectangle or box of half extents h at a point p is
+//   |max(q, 0)| + min(max_i q_i, 0) with q = |p| - h.
 
 #include "sim/obstacles/obstacle.h"
 

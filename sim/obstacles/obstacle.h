@@ -40,16 +40,16 @@ struct Mesh {
 /// One solid thing that does not move.
 using Obstacle = std::variant<Box, Cylinder, Sphere, Mesh, VoxelColumns, Ring>;
 
-/// Throws std::invalid_argument, naming the obstacle as `name`, the value and the allowed range, if
-/// a size is not in (0, 1000] m or a number is not finite.
+/// Throws std::invalid_argument if a size is not in (0, 1000] m or a number is not finite. The
+/// message names the obstacle as `name`, the value and the allowed range.
 void Validate(const Obstacle& obstacle, const std::string& name);
 
-/// Throws std::invalid_argument, naming the obstacle as `name` and what needs it as `user`, if it is a group of voxel
-/// columns or a ring: they are for maps and planners, nothing is rendered or touched of them.
+/// Throws std::invalid_argument if the obstacle is a group of voxel columns or a ring. These are for maps and planners
+/// only; they are neither rendered nor touched. The message names the obstacle as `name` and what needs it as `user`.
 void CheckGeom(const Obstacle& obstacle, const std::string& name, const std::string& user);
 
-/// Distance from the point `p_W` to the surface [m], negative inside. Exact, but for the inside of
-/// voxel columns and rings (see there). Does not allocate.
+/// Distance from the point `p_W` to the surface [m], negative inside. Exact, except inside voxel
+/// columns and rings (see there). Does not allocate.
 double SignedDistance(const Obstacle& obstacle, const Eigen::Vector3d& p_W);
 
 /// Smallest s >= 0 at which origin + s * direction crosses the surface, +infinity if it never does.
@@ -62,7 +62,7 @@ double RayDistance(const Obstacle& obstacle, const Eigen::Vector3d& origin_W,
 /// Tight axis-aligned bounds.
 Bounds BoundsOf(const Obstacle& obstacle);
 
-/// A box made ready for many questions, as SignedDistance and RayDistance answer them.
+/// A box prepared for many calls; it gives what SignedDistance and RayDistance give.
 class TurnedBox {
  public:
   explicit TurnedBox(const Box& box);

@@ -11,8 +11,8 @@
 
 namespace touchdown::sim {
 
-/// All obstacles of a world, each valid. The ground (z = 0) and the pad are not in it. A value type: the one list that
-/// rays, distances, touches, pictures and maps are made from. Searched by a tree, so that thousands are no burden.
+/// All obstacles of a world, each valid. The ground (z = 0) and the pad are not in it. A value type. Rays, distances,
+/// touches, pictures and maps are made from this one list. A tree searches it, so thousands of obstacles are no burden.
 class ObstacleField {
  public:
   ObstacleField() = default;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Ray against box and cylinder. Both are intersections of convex pieces (three slabs; one slab and
-// an infinite cylinder), so the ray is inside for one interval [enter, leave] of its parameter: the
-// intersection of the pieces' intervals (the slab method, Kay and Kajiya, SIGGRAPH 1986). A capsule
-// is the convex union of a cylinder and two balls: its interval spans theirs.
+// Ray against box and cylinder. Both are intersections of convex pieces: three slabs, or one slab
+// and an infinite cylinder. So the ray is inside for one interval [enter, leave] of its parameter.
+// This is the intersection of the pieces' intervals (the slab method, Kay and Kajiya, SIGGRAPH
+// 1986). A capsule is the convex union of a cylinder and two balls: its interval spans theirs.
 
 #include "sim/obstacles/ray_intersection.h"
 
@@ -37,7 +37,8 @@ void CutBySlab(double half_extent, double origin, double direction, Interval* in
   interval->leave = std::min(interval->leave, far);
 }
 
-// Interval where a s^2 + 2 b s + c <= 0; for a = 0 (the ray does not move) all of it or nothing.
+// Interval where a s^2 + 2 b s + c <= 0. For a = 0 (the ray does not move) it is everything or
+// nothing.
 Interval WhereNegative(double a, double b, double c) {
   if (a == 0.0) return c > 0.0 ? Interval{kInfinity, -kInfinity} : Interval{};
   const double discriminant = b * b - a * c;

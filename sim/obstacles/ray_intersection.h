@@ -10,9 +10,9 @@ namespace touchdown::sim {
 /// A ray that meets nothing.
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Smallest s >= 0 at which origin + s * direction crosses the surface of a box centred at the
-/// origin with its sides along the axes; +infinity if it never does. From inside: where the ray
-/// leaves. `direction` has any length > 0. Does not allocate.
+/// Smallest s >= 0 at which origin + s * direction crosses the surface of a box, +infinity if it
+/// never does. The box is centred at the origin with its sides along the axes. From inside: where
+/// the ray leaves. `direction` has any length > 0. Does not allocate.
 double RayBox(const Eigen::Vector3d& half_extents, const Eigen::Vector3d& origin,
               const Eigen::Vector3d& direction);
 

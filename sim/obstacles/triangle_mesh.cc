@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The nearest point of the surface lies in a triangle, on an edge or at a corner. The sign is that of the offset along
-// the normal there: the triangle's, the sum of the edge's two, or the sum at the corner by the angles. This is right for
-// every closed surface (Baerentzen and Aanaes, Signed distance computation using the angle weighted pseudonormal, IEEE
-// TVCG 11(3), 2005).
+// the normal there. This is the triangle's normal, the sum of an edge's two, or the sum at a corner weighted by the
+// angles. It is right for every closed surface (Baerentzen and Aanaes, Signed distance computation using the angle
+// weighted pseudonormal, IEEE TVCG 11(3), 2005).
 #include "sim/obstacles/triangle_mesh.h"
 
 #include <algorithm>
@@ -54,8 +54,9 @@ Nearest NearestOf(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eige
   return {a + vb * scale * ab + vc * scale * ac, Kind::kInside, 0};
 }
 
-// A triangle reaches into a box about the origin: by separating axes: the box's three, the triangle's normal, and the products
-// of the edges of both (T. Akenine-Moeller, Fast 3D triangle-box overlap testing, 2001).
+// Whether a triangle reaches into a box about the origin, by separating axes. The axes are the box's three, the
+// triangle's normal, and the products of the edges of both (T. Akenine-Moeller, Fast 3D triangle-box overlap testing,
+// 2001).
 bool ReachesIn(const std::array<Eigen::Vector3d, 3>& corners, const Eigen::Array3d& half) {
   const auto apart = [&](const Eigen::Vector3d& axis) {
     const double reach = (half * axis.array().abs()).sum();

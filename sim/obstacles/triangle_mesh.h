@@ -23,9 +23,10 @@ std::string PlaceText(const Eigen::Vector3d& p);
 /// and does not cut itself; that alone is not checked. Distances and rays are exact, by a tree of bounds.
 class TriangleMesh {
  public:
-  /// Corners in W [m], and per triangle the indices of its three. Turned inside out where all triangles are.
-  /// @throws std::invalid_argument naming the triangle or the edge: a corner that is not finite or no index, a triangle
-  /// without an area, an edge that has not two triangles, or that both run along in one sense; no triangle.
+  /// Corners in W [m], and per triangle the indices of its three. If all triangles face inwards, all are turned.
+  /// @throws std::invalid_argument naming the triangle or the edge. Faults: no triangle; a corner that is not finite;
+  /// an index of no corner; a triangle without an area; an edge without exactly two triangles, or that both traverse in
+  /// the same direction.
   TriangleMesh(std::vector<Eigen::Vector3d> corners, std::vector<Eigen::Vector3i> triangles);
 
   const std::vector<Eigen::Vector3d>& corners() const { return corners_; }

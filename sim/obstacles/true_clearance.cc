@@ -2,13 +2,16 @@
 // FCL 0.7: the obstacles in a dynamic AABB tree, the vehicle as one cylinder. First the colliding
 // pairs with their depth (libccd's MPR); only if there is none, the distance (libccd's GJK).
 //
-// Traps of Debian's build, all met: it is compiled with assertions, so a state it dislikes ends the
-// process: poses are checked here. GST_INDEP together with signed distance or nearest points aborts
-// on some shapes: GST_LIBCCD throughout. Signed distance by libccd costs 10 to 20 times the
-// unsigned one and its EPA can fail on face contacts: not asked for. The default tolerance, 1e-6,
-// is a change per iteration, not an error: with it libccd's distance to a cylinder is up to 3 mm
-// too LARGE; with 1e-12 it is within 1e-9 m, for 2 instead of 1.5 us a pair (3000 random poses over
-// a box).
+// Traps of Debian's build, all met:
+// - It is compiled with assertions, so a state it dislikes ends the process. Poses are checked
+//   here.
+// - GST_INDEP together with signed distance or nearest points aborts on some shapes. GST_LIBCCD is
+//   used throughout.
+// - Signed distance by libccd costs 10 to 20 times the unsigned one, and its EPA can fail on face
+//   contacts. It is not used.
+// - The default tolerance, 1e-6, is a change per iteration, not an error. With it libccd's distance
+//   to a cylinder is up to 3 mm too LARGE. With 1e-12 it is within 1e-9 m, for 2 instead of 1.5 us
+//   a pair (3000 random poses over a box).
 
 #include "sim/obstacles/true_clearance.h"
 
@@ -61,7 +64,7 @@ bool VisitPair(FclObject* a, FclObject* b, void* data, double& bound) {
   request.gjk_solver_type = fcl::GST_LIBCCD;
   request.distance_tolerance = kGjkTolerance;
   fcl::DistanceResultd result;
-  // A pair in touch gives -1: nothing collides here, so it is the touch itself.
+  // A pair that touches gives -1. Nothing collides here, so the distance is 0.
   const double distance = std::max(0.0, fcl::distance(a, b, request, result));
   if (distance < search->best.distance) {
     search->best = {distance, ObstacleOf(*a, *b)};

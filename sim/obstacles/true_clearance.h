@@ -17,11 +17,11 @@ struct Clearance {
   int obstacle = -1;      ///< index in the field, -1: none
 };
 
-/// True distance between the vehicle and the obstacles, by FCL on the exact shapes: a checker that
-/// shares no code with map, planner or contact physics. The vehicle is the upright-in-B cylinder of
-/// hull_radius from the soles of the feet (-foot_depth) to hull_top, which holds every colliding
-/// part of it. Ground and pad do not count. Of a mesh it is the distance to the surface: 0 is the least where the hull
-/// touches it, and a hull that is wholly inside is as far as from outside.
+/// True distance between the vehicle and the obstacles, by FCL on the exact shapes. It shares no code with map, planner
+/// or contact physics. The vehicle is the upright-in-B cylinder of hull_radius from the soles of the feet (-foot_depth)
+/// to hull_top. This cylinder holds every colliding part of the vehicle. Ground and pad do not count. For a mesh it is
+/// the distance to the surface: it is 0 where the hull touches the surface. For a hull wholly inside a mesh it is
+/// positive, as from outside.
 class TrueClearance {
  public:
   /// Throws std::invalid_argument naming the value if the model's hull is not a cylinder of
@@ -42,8 +42,8 @@ class TrueClearance {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The least clearance of a flight. From one pose to the next no point of the hull comes farther than its origin moves
-/// and it turns: of thousands of poses few have to be asked, and the least is the same.
+/// The least clearance of a flight. Between two poses no point of the hull moves farther than the origin's way plus the
+/// way of the rotation. So only few of thousands of poses need a query, and the result is the same.
 class LeastClearance {
  public:
   LeastClearance(const ObstacleField& obstacles, const estimation::VehicleModel& model);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Within a segment the heading is the integral of the curvature in closed form; the position is
-// closed form on straights and arcs and Gauss-Legendre quadrature on ramps, to rounding.
+// Within a segment the heading is the integral of the curvature in closed form. The position is in
+// closed form on straights and arcs. On ramps it is a Gauss-Legendre quadrature, exact to rounding.
 
 #include "touchdown/sim/pad/curvature_chain.h"
 

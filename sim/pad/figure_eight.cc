@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The sine-generated curve: its heading is A sin(phi), phi = 2 pi s / length. It closes on itself where
-// the mean of cos(A sin(phi)), which is the Bessel function J0(A), is zero; A is the first zero, so that
-// the curve swings by 138 degrees to either side and crosses itself once a loop. Its position is the
-// integral of the Jacobi-Anger series
+// The sine-generated curve: its heading is A sin(phi), phi = 2 pi s / length. It closes on itself where the mean of
+// cos(A sin(phi)), the Bessel function J0(A), is zero. A is the first zero, so the curve swings by 138 degrees to
+// either side and crosses itself once a loop. Its position is the integral of the Jacobi-Anger series
 //   cos(A sin phi) = J0(A) + 2 sum J_2k(A) cos(2k phi), sin(A sin phi) = 2 sum J_2k+1(A) sin((2k+1) phi)
-// (Abramowitz and Stegun 9.1.42, 9.1.43), whose terms fall below rounding after a dozen. Sine-generated
-// curves: L. Leopold, W. Langbein, Sci. Am. 214 (1966) 60, for rivers.
+// (Abramowitz and Stegun 9.1.42, 9.1.43). The terms fall below rounding after a dozen. Sine-generated curves: L.
+// Leopold, W. Langbein, Sci. Am. 214 (1966) 60, for rivers.
 
 #include "touchdown/sim/pad/figure_eight.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The piecewise linear way, convolved with a quadratic B-spline K of width three times w. Every knot at which the speed
-// changes by d adds d (R(x) - max(0, x)), where R'' = K and x is the time since the knot. Farther than 1.5 w from it
-// R(x) = max(0, x). The smoothed speed is an average of the speeds of the stretches nearby: it stays between the slowest
-// and the fastest. With r their difference (integrate the convolution by parts):
+// The piecewise linear way, convolved with a quadratic B-spline K of width three times w. A knot at which the speed
+// changes by d adds d (R(x) - max(0, x)). Here R'' = K, and x is the time since the knot. Farther than 1.5 w from it
+// R(x) = max(0, x). The smoothed speed is an average of the speeds of the stretches nearby: it stays between the
+// slowest and the fastest. With r their difference (integrate the convolution by parts):
 //   |acceleration| <= r max K = 0.75 r / w,  |jerk| <= r times the integral of the positive part of K'' = 2 r / w^2.
 
 #include "touchdown/sim/pad/pace.h"

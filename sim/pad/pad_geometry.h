@@ -29,8 +29,8 @@ Box DeckBox(const PadGeometry& geometry, const estimation::PadState& pad);
 /// The vehicle's body below the deck in W.
 Box PadBodyBox(const PadGeometry& geometry, const estimation::PadState& pad);
 
-/// Where an opaque plate ends that covers this share of the printed sheet: it lies on the sheet from
-/// this x_P to the sheet's front edge [m].
+/// The edge of an opaque plate that covers this share of the printed sheet. The plate lies on the sheet from this x_P
+/// to the sheet's front edge [m].
 double PlateEdge(double share);
 
 }  // namespace touchdown::sim

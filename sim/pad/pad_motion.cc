@@ -19,7 +19,7 @@ namespace {
 using Kind = PadMotionConfig::Kind;
 
 constexpr double kFar = 1.0e5;  // [m]
-// A random drive is drawn for so long after its phase [s]: more than a trial and what it looks ahead.
+// A random drive is drawn for so long after its phase [s]: more than a trial and its horizon.
 constexpr double kRandomHorizon = 700.0;
 constexpr double kLongestStretch = 600.0;   // of driving or standing [s]
 constexpr double kMostAcceleration = 20.0;  // [m/s^2]

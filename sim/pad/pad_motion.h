@@ -22,7 +22,7 @@ struct PadMotionConfig {
     kStopAndGo,     ///< straight, for go_time at speed, then standing for stop_time, and so on
     kReversing,     ///< straight, for go_time forwards, then as long backwards, and so on
     kRandom,        ///< turns and speeds drawn from seed
-    kWaypoints,     ///< past `waypoints`, whatever p_start, heading and speed say
+    kWaypoints,     ///< past `waypoints`; p_start, heading and speed are not used
   };
   Kind kind = Kind::kStraightTurn;
   Eigen::Vector3d p_start = {0.0, 0.0, 0.3};  ///< centre of the deck's upper face at phase 0 [m]

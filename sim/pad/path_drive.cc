@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Paces are lists of knots; sim/pace smooths them. The jerk of a random drive, along and across the path, is
-// (s''' - s'^3 k^2) and (s'^3 k' + 3 s' s'' k), with the curvature k and its slope k'. Each of these four shares is kept
-// to a third of the limit or less, so that the norm is within it.
+// Paces are lists of knots; sim/pace smooths them. The path has the curvature k and its slope k'. The jerk of a random
+// drive is (s''' - s'^3 k^2) along the path and (s'^3 k' + 3 s' s'' k) across it. Each of these four terms is kept to a
+// third of the limit or less, so that the norm is within it.
 
 #include "sim/pad/path_drive.h"
 
@@ -20,8 +20,7 @@ struct Stretch {
   double time = 0.0;   // [s]
 };
 
-// Stretches in turn for ever, the first one beginning with the change to its speed over, and the way 0, at
-// t = 0.
+// Stretches in turn, for ever. At t = 0 the change to the first one's speed has ended, and the arc length is 0.
 Pace Alternating(const std::vector<Stretch>& stretches, double smoothing) {
   const double early = 1.5 * smoothing;
   std::vector<Pace::Knot> knots = {{-early, -early * stretches.front().speed}};

@@ -14,8 +14,8 @@ struct PathDrive {
   Pace pace;
 };
 
-/// Periodic, at every t: `speed` for `go_time`, standing for `stop_time`. The way is 0 at t = 0, where a
-/// change to `speed` is just over; at `go_time` the one to standing is. Acceleration is at most
+/// Periodic, at every t: `speed` for `go_time`, standing for `stop_time`. The arc length is 0 at t = 0, where a change
+/// to `speed` has just ended. At `go_time` the change to standing has just ended. Acceleration is at most
 /// `acceleration`. Times include half of each change of speed [s].
 Pace StopAndGoPace(double speed, double go_time, double stop_time, double acceleration);
 
@@ -30,10 +30,10 @@ struct RandomDriveLimits {
   double jerk = 1.0;          ///< of the motion, in norm [m/s^3]
 };
 
-/// Turns and speeds drawn from `seed`: arcs of random curvature, each for 2 to 8 s at full speed, and
-/// speeds between 0.3 of the full one and all of it, or in one case of five a stop, for 3 to 8 s each.
-/// Drawn from t = 0 to `until` [s], and the same drive whatever `until` is; before 0 it comes straight at
-/// its first speed.
+/// Turns and speeds drawn from `seed`. The turns are arcs of random curvature, each as long as 2 to 8 s at full speed.
+/// The speeds are between 0.3 of the full one and the full one, or in one case of five zero, for 3 to 8 s each. They
+/// are drawn from t = 0 to `until` [s]. The drive is the same whatever `until` is. Before 0 it comes straight at its
+/// first speed.
 PathDrive RandomDrive(const Eigen::Vector2d& start, double heading, const RandomDriveLimits& limits,
                       std::uint64_t seed, double until);
 

@@ -6,8 +6,8 @@
 
 namespace touchdown::sim {
 
-/// What a rendered image of the pad, and what estimation::PadFinder makes of it, comes to: the
-/// constants of the fast tag camera. Made by `touchdown study tags --fit` (docs/tag_pose.md).
+/// The constants of the fast tag camera. They describe rendered images of the pad and the result of
+/// estimation::PadFinder on them. Made by `touchdown study tags --fit` (docs/tag_pose.md).
 struct TagModel {
   /// A tag in view is found with probability Phi((size - half_size) / spread), size its shortest
   /// side and Phi the normal distribution.

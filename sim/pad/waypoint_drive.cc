@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A corner becomes two ramps of the curvature, up to k and down again, each of length l = angle / k. At
-// speed v the acceleration across is v^2 k at the most and its rate v^3 k / l times the steepest slope of
-// a ramp. All such turns by one angle are similar, so that the way from the corner to where one begins is
-// l times a factor, which is half the chord of the turn with l = 1 over the cosine of half the angle.
+// A corner becomes two ramps of the curvature, up to k and down again, each of length l = angle / k. At speed v the
+// acceleration across is at most v^2 k. Its rate is v^3 k / l times the steepest slope of a ramp. All such turns by one
+// angle are similar. So the distance from the corner to the turn's start is l times a factor. This factor is half the
+// chord of the turn with l = 1, over the cosine of half the angle.
 
 #include "sim/pad/waypoint_drive.h"
 

@@ -18,7 +18,7 @@
 namespace touchdown::sim {
 namespace {
 
-// A line's colour is its own light for the most part: what it reflects is added.
+// Most of a line's colour is its own light; the reflected light is added.
 constexpr float kReflect = 0.55F;
 constexpr double kSunHeight = 30.0;  // of the shadow map's origin above what is looked at [m]
 constexpr double kSunStep = 2.0;     // by which it moves on, so that shadows' edges stand still [m]

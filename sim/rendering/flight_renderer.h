@@ -31,7 +31,7 @@ struct FlightMark {
   std::array<float, 4> rgba = {1.0F, 1.0F, 1.0F, 1.0F};
 };
 
-/// What is to be seen at one time.
+/// The visible scene at one time.
 struct FlightMoment {
   CameraPose camera;
   estimation::VehicleState vehicle;
@@ -50,8 +50,8 @@ class FlightRenderer {
   FlightRenderer& operator=(FlightRenderer&&) noexcept;
   ~FlightRenderer();
 
-  /// @param rgb height x width x 3, row-major, row 0 at the top; resized. There is room for kMostPieces: the marks, then
-  /// the pieces of the lines, in order, each from its first point on; the others are left out.
+  /// @param rgb height x width x 3, row-major, row 0 at the top; resized. At most kMostPieces are drawn: the marks,
+  /// then the pieces of the lines in order, each line from its first point on. The others are left out.
   void Render(const FlightMoment& moment, std::vector<std::uint8_t>* rgb);
 
   static constexpr int kMostPieces = 4000;

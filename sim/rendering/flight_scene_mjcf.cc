@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The parts that cameras see are those of SceneMjcf; light, sky and haze are for people. Measured in MuJoCo 2.2.2 with
-// OSMesa at 1280 x 720: shadows double the time of a frame, multisampling would double it once more, and
-// every stack of MuJoCo's cylinders and capsules costs in a wood (12 of them: a third more than 4).
+// OSMesa at 1280 x 720: shadows double the time of a frame, and multisampling would double it once more. In a wood
+// every stack of MuJoCo's cylinders and capsules costs time (12 of them: a third more than 4).
 
 #include "sim/rendering/flight_scene_mjcf.h"
 
@@ -13,8 +13,8 @@
 namespace touchdown::sim {
 namespace {
 
-// A shadow map holds what lies farthest from the sun of each thing; of a sheet as thin as paper that would be its upper
-// face, which then is in its own shadow here and there.
+// A shadow map holds the surface of each thing that is farthest from the sun. For a sheet as thin as paper this would
+// be its upper face, which would then lie in its own shadow in places.
 constexpr double kSheetDepth = 0.015;  // [m]
 
 }  // namespace

@@ -7,8 +7,8 @@
 
 namespace touchdown::sim {
 
-/// The scene of SceneMjcf as people like to see it: with sky, sun and shadows, and with a mocap body "vehicle" that looks
-/// as LooksOf says. Throws as both do.
+/// The scene of SceneMjcf for people to watch. It has sky, sun and shadows, and a mocap body "vehicle" that looks as
+/// LooksOf says. Throws as both do.
 std::string FlightSceneMjcf(const VisualScene& scene, const std::string& vehicle_mjcf,
                             const ViewConfig& view);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// MuJoCo draws its letters as bitmaps. They are drawn at twice the size, read back, and every four pixels are one: what is
-// half covered is half as strong. So no font file is needed, and text costs no OpenGL.
+// MuJoCo draws its letters as bitmaps. They are drawn at twice the size and read back. Four pixels become one, so a
+// half covered pixel is half as strong. So no font file is needed, and text costs no OpenGL.
 
 #include "sim/rendering/font.h"
 

@@ -21,7 +21,7 @@ class Font {
   explicit Font(int size);
 
   int height() const { return height_; }  ///< of a line [pixel]
-  /// That of '?' for what the font lacks.
+  /// The mask of '?' for a character that the font lacks.
   const Glyph& Of(char letter) const;
   int WidthOf(std::string_view text) const;  ///< [pixel]
 

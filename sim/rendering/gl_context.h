@@ -15,7 +15,7 @@ class GlContext {
   GlContext& operator=(GlContext&&) noexcept;
   ~GlContext();
 
-  /// Makes OpenGL calls of this thread go to this context. Throws std::runtime_error if OSMesa
+  /// OpenGL calls of this thread then go to this context. Throws std::runtime_error if OSMesa
   /// refuses.
   void MakeCurrent();
 

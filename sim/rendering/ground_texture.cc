@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Value noise: octaves of random lattices from 8 cells a side up to one cell a texel, each
-// interpolated bilinearly and half as strong as the one before, around a middle grey.
+// Value noise around a middle grey: octaves of random lattices, from 8 cells a side up to one cell
+// a texel. Each is interpolated bilinearly and half as strong as the one before.
 
 #include "sim/rendering/ground_texture.h"
 

@@ -5,8 +5,8 @@
 
 namespace touchdown::sim {
 
-/// Something like worn asphalt, always the same, that fits to itself at its edges. @param texels
-/// along each side, a power of two from 8 on.
+/// A texture like worn asphalt, always the same, whose edges match each other. @param texels along
+/// each side, a power of two from 8 on.
 estimation::GrayImage GroundTexture(int texels);
 
 }  // namespace touchdown::sim

@@ -10,7 +10,7 @@
 
 namespace touchdown::sim {
 
-/// What there is to be seen besides the vehicle, which its own cameras do not see.
+/// What is visible besides the vehicle, which its own cameras do not see.
 struct VisualScene {
   ObstacleField obstacles;
   PadGeometry pad;
@@ -18,7 +18,7 @@ struct VisualScene {
   double occlusion = 0.0;    ///< share of the printed sheet under an opaque plate, in [0, 1)
 };
 
-/// How it is looked at: a pinhole camera with square pixels and its axis through the image's middle.
+/// The camera model: a pinhole camera with square pixels and its axis through the image's middle.
 struct ViewConfig {
   int width = 320;          ///< [pixel], in [1, 4096]
   int height = 240;         ///< [pixel], in [1, 4096]
@@ -33,16 +33,17 @@ struct CameraPose {
   Eigen::Matrix3d R_WC = Eigen::Matrix3d::Identity();  ///< C to W
 };
 
-/// Parts of the MJCF text of a scene: textures, materials and meshes, as they stand in <asset>; ground and obstacles, and the
-/// mocap bodies "pad" and "camera", as they stand in <worldbody>. See SceneMjcf, which throws likewise.
+/// Parts of the MJCF text of a scene. SceneAssets gives textures, materials and meshes, as in <asset>. SceneBodies
+/// gives ground, obstacles and the mocap bodies "pad" and "camera", as in <worldbody>. See SceneMjcf, which throws
+/// likewise.
 std::string SceneAssets(const VisualScene& scene);
 /// @param sheet how deep the printed sheet reaches into the deck [m].
 std::string SceneBodies(const VisualScene& scene, const ViewConfig& view, double sheet);
 
-/// MJCF text of the scene for rendering: the mocap bodies "pad" (its origin at the centre of the
-/// deck's upper face) and "camera" (x right, y up, looks along -z) are moved by hand, nothing
-/// collides, nothing moves by itself. Textures "ground" and "pad" are to be filled. Throws
-/// std::invalid_argument for an obstacle that is neither box nor cylinder.
+/// MJCF text of the scene for rendering. The mocap bodies "pad" and "camera" are moved by hand. The
+/// pad's origin is at the centre of the deck's upper face; the camera has x right, y up and looks
+/// along -z. Nothing collides or moves by itself. Textures "ground" and "pad" are to be filled.
+/// Throws std::invalid_argument for an obstacle that CheckGeom refuses (voxel columns, rings).
 std::string SceneMjcf(const VisualScene& scene, const ViewConfig& view);
 
 /// Edge of the square texture "ground" [texel].

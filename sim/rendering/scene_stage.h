@@ -16,8 +16,8 @@
 
 namespace touchdown::sim {
 
-/// A model of a scene without dynamics, and what draws it: bodies with mocap are put where they are to be, then it is
-/// drawn. Belongs to the thread that made it.
+/// A model of a scene without dynamics, and its renderer. Bodies with mocap are placed, then the scene is drawn.
+/// Belongs to the thread that made it.
 class SceneStage {
  public:
   /// @param mjcf of `scene`, with bodies "pad" and "camera" as in SceneMjcf. @param ground its texture, kGroundTexels a side.
@@ -32,7 +32,7 @@ class SceneStage {
   void Place(const CameraPose& camera);
   void Place(const estimation::PadState& pad);
 
-  /// Makes MuJoCo's list of what is drawn from where everything is placed; it can be changed until Draw.
+  /// Makes MuJoCo's list of drawn geoms at the current poses. The list can be changed until Draw.
   mjvScene* Update();
 
   /// Draws it. @param rgb height x width x 3, nullptr: not wanted. @param depth MuJoCo's depth buffer, height x width;

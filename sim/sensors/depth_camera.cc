@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Depth images by casting rays, one per pixel centre, at the shapes themselves. Each shape, of a mesh each triangle, is
-// met by the rays of those pixels alone that its corners, or those of its bounds, enclose in the image: with 10^5
-// triangles that costs a tenth of a search along each ray. Rays have z_C = 1, so that a ray's parameter is the depth.
+// Depth images by casting rays, one per pixel centre, at the shapes themselves. Each shape (for a mesh, each triangle)
+// is tested only with the rays of the pixels that its corners, or its bounds, enclose in the image. With 10^5 triangles
+// this costs a tenth of a search along each ray. Rays have z_C = 1, so a ray's parameter is the depth.
 
 #include "sim/sensors/depth_camera.h"
 

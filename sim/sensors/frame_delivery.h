@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How frames get from a sensor to their user: some are lost, the others come late.
+// Delivery of frames from a sensor to its user: some are lost, the others are late.
 #pragma once
 
 #include <cstdint>
@@ -20,8 +20,8 @@ struct FrameDeliveryConfig {
   double outage_end_s = 0.0;      ///< ... until here; no outage if not after its begin [s]
 };
 
-/// Holds frames, or what was made of them, until they would arrive. Ask Admit first: a lost frame
-/// needs no image. The same seed gives the same frames.
+/// Holds frames, or their results, back until they would arrive. Ask Admit first: a dropped frame needs no image. The
+/// same seed gives the same frames.
 template <typename Frame>
 class FrameDelivery {
  public:

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The simulated GPS of the paper: true position plus Gaussian noise of standard deviation sigma
-// (0.01, 0.5 and 1.0 m in its case studies), independent in each horizontal axis and each sample.
+// The simulated GPS of the paper: true position plus Gaussian noise of standard deviation sigma,
+// independent in each horizontal axis and each sample. The paper's case studies have a sigma of
+// 0.01, 0.5 and 1.0 m.
 
 #include "sim/sensors/gps.h"
 
@@ -28,7 +29,7 @@ std::optional<estimation::PadGpsFix> PadGps::Poll(double t, const estimation::Pa
   fix.p_WP.x() = pad.p_WP.x() + noise_.Normal(config_.sigma);
   fix.p_WP.y() = pad.p_WP.y() + noise_.Normal(config_.sigma);
   fix.sigma = config_.sigma;
-  // Drawn whether they are used or not: the fixes around an outage or an outlier stay as they are.
+  // Drawn whether they are used or not, so that fixes around an outage or an outlier do not change.
   const bool outlier = outliers_.Uniform(0.0, 1.0) < config_.outlier_probability;
   const double direction = outliers_.Uniform(0.0, 2.0 * std::numbers::pi);
   if (outlier) {

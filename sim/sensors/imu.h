@@ -13,10 +13,10 @@
 
 namespace touchdown::sim {
 
-/// Noise of an IMU, each axis. White noise and turn-on offsets: a MEMS IMU of the class of Bosch's
-/// BMI088 (data sheet BST-BMI088-DS001: 190 ug/sqrt(Hz) and 0.014 deg/s/sqrt(Hz)), its offsets of
-/// 20 mg and 1 deg/s calibrated to a quarter. The data sheet is silent on bias walks: those of the
-/// EuRoC MAV data set's ADIS16448 (Burri et al., IJRR 2016, sensor.yaml).
+/// Noise of an IMU, each axis. White noise and turn-on offsets are those of a MEMS IMU of the class
+/// of Bosch's BMI088 (data sheet BST-BMI088-DS001: 190 ug/sqrt(Hz) and 0.014 deg/s/sqrt(Hz)). Its
+/// offsets of 20 mg and 1 deg/s are calibrated to a quarter. The data sheet gives no bias walks:
+/// they are those of the EuRoC MAV data set's ADIS16448 (Burri et al., IJRR 2016, sensor.yaml).
 struct ImuConfig {
   double rate_hz = 500.0;                ///< [Hz], in [10, 1000]
   double accelerometer_noise = 1.86e-3;  ///< density [m/s^2/sqrt(Hz)], in [0, 1]
@@ -28,8 +28,8 @@ struct ImuConfig {
 };
 
 /// IMU in the vehicle's centre of mass. It reads the mean specific force and the mean angular rate
-/// since the sample before, as an IMU that integrates inside does; no scale error, no
-/// misalignment, no clipping, no vibration.
+/// since the sample before, as an IMU that integrates inside does. It has no scale error,
+/// misalignment, clipping or vibration.
 class Imu {
  public:
   /// `seed` feeds the streams "imu noise" and "imu bias". Throws std::invalid_argument naming key,

@@ -39,7 +39,7 @@ estimation::OwnStateOptions FilterOptionsFor(const OwnSensorRigConfig& config,
     latency = std::max(latency, 1e-3 * sensor->latency_ms);
   }
   options.max_delay = std::max(options.max_delay, latency + 0.1);
-  // Between two fixes of a slow sensor nothing is missing yet; but a silence that is long is one.
+  // Between two fixes of a slow sensor nothing is missing yet, but a long silence counts.
   double period = std::numeric_limits<double>::infinity();
   for (const OwnSensorConfig* sensor : {&config.sensors.gps.sensor, &config.sensors.odometry}) {
     if (sensor->rate_hz <= 0.0) continue;

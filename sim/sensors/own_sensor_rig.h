@@ -23,8 +23,8 @@ struct OwnSensorRigConfig {
   double takeoff_heading_sigma = 0.035;  ///< [rad], in [0, 3]
 };
 
-/// `options` with what a filter has to know of these sensors: IMU noise, bias priors, IMU rate, reach; its outage_after
-/// is no less than what two fixes of the faster of GPS and odometry take.
+/// `options` with what a filter has to know of these sensors: IMU noise, bias priors, IMU rate, reach. Its outage_after
+/// is at least as long as two fixes of the faster of GPS and odometry take.
 estimation::OwnStateOptions FilterOptionsFor(const OwnSensorRigConfig& rig,
                                              const estimation::OwnStateOptions& options = {});
 
@@ -51,8 +51,9 @@ class OwnSensorRig {
     }
   }
 
-  /// What comes at the true state's time t of the trial. Call once per simulation step, from t = timestep on. In each
-  /// step the IMU comes first, then what has arrived of the other sensors in a fixed order. Does not allocate.
+  /// The measurements that arrive at the true state's time t of the trial. Call once per simulation step, from t =
+  /// timestep on. In each step the IMU comes first, then what has arrived of the other sensors in a fixed order. Does
+  /// not allocate.
   template <typename Take>
   void Poll(const estimation::VehicleState& vehicle, Take&& take) {
     estimation::VehicleState shifted = vehicle;

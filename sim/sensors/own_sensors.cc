@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // True value plus white noise plus a stationary first-order Gauss-Markov error, sampled exactly:
-// d' = k d + sqrt(1 - k^2) sigma n with k = exp(-1 / (rate tau)). Odometry measures the velocity in
-// the body frame, as visual-inertial odometry does when its drifting position and heading are left
-// aside: integrated, white noise and drift become the walk of its position.
+//   d' = k d + sqrt(1 - k^2) sigma n with k = exp(-1 / (rate tau)).
+// Odometry measures the velocity in the body frame, as visual-inertial odometry does without its
+// drifting position and heading. Its white noise and drift, integrated, become the walk of its
+// position.
 
 #include "sim/sensors/own_sensors.h"
 

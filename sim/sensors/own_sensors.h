@@ -19,9 +19,9 @@
 
 namespace touchdown::sim {
 
-/// Rate, noise and delay of a sensor. `drift_sigma` is that of an error with memory, a first-order
-/// Gauss-Markov process of `drift_time`, beside the white noise; the sensor claims both together as
-/// if they were white, as receivers do, which leaves a filter that believes it overconfident.
+/// Rate, noise and delay of a sensor. `drift_sigma` is that of an error with memory beside the
+/// white noise, a first-order Gauss-Markov process of `drift_time`. The sensor states both together
+/// as if they were white, as receivers do. A filter that believes this is overconfident.
 struct OwnSensorConfig {
   double rate_hz = 10.0;     ///< [Hz], in (0, 1000]; 0: the sensor is off
   double sigma = 0.0;        ///< white noise, each axis [sensor's unit], in [0, 100]
@@ -30,8 +30,9 @@ struct OwnSensorConfig {
   double latency_ms = 0.0;   ///< [ms], in [0, 500]
 };
 
-/// GPS with RTK corrections, of the class of u-blox's ZED-F9P (data sheet: 10 mm + 1 ppm CEP),
-/// doubled for a vehicle in motion; vertical noise is `vertical_factor` of the horizontal.
+/// GPS with RTK corrections, of the class of u-blox's ZED-F9P (data sheet: 10 mm + 1 ppm CEP). The
+/// noise is doubled for a vehicle in motion. Vertical noise is `vertical_factor` times the
+/// horizontal.
 struct OwnGpsConfig {
   OwnSensorConfig sensor{10.0, 0.02, 0.0, 60.0, 100.0};  ///< [m]
   double vertical_factor = 2.0;                          ///< in [0, 10]

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Grey images: ITU-R BT.601 luma of the rendered colours; motion blur as the mean of subframes
-// evenly spread over the exposure, as many as the image moves pixels in it; then Gaussian noise, and
-// rounding to 8 bits.
+// Grey images: ITU-R BT.601 luma of the rendered colours. Motion blur is the mean of subframes evenly spread over the
+// exposure, one for each pixel that the image moves in it. Then follow Gaussian noise and rounding to 8 bits.
 
 #include "sim/sensors/pad_camera.h"
 

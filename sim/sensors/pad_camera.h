@@ -35,7 +35,7 @@ class PadCamera {
   PadCamera(const PadCameraConfig& config, const VisualScene& scene, std::uint64_t seed);
 
   /// Takes an image. The states are those in the middle of the exposure, which is the image's time
-  /// stamp; before and after it everything moves on at its velocity and angular rate. `image` is
+  /// stamp. Before and after it everything moves at its velocity and angular rate. `image` is
   /// resized if it has another size.
   void Capture(const estimation::VehicleState& vehicle, const estimation::PadState& pad,
                estimation::GrayImage* image);

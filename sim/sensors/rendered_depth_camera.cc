@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Depth images from the renderer's depth buffer. What differs from exact rays: the buffer's steps
-// (0.1 mm at 6 m with the near plane at 20 mm), the cylinders' facets, and which side of an edge a
-// pixel falls on. Nothing nearer than the near plane is seen.
+// Depth images from the renderer's depth buffer. They differ from exact rays in three things. The
+// buffer has steps (0.1 mm at 6 m with the near plane at 20 mm). Cylinders have facets. A pixel at
+// an edge may belong to the other side. Nothing nearer than the near plane is seen.
 
 #include "sim/sensors/rendered_depth_camera.h"
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Measurement model of the pad camera, with the constants of TagModel, which are fitted to rendered
-// images. The tags' true corners are projected; a tag is found by a probit of its size. Where the
-// sheet is small enough in the image for estimation::PadAlignment, the corners of all tags whose
-// centres are in it stand for it, with a small noise of their own; else those of the tags that are
-// found, with theirs. From them the pose is solved by the very solver that rendered images use.
+// images. The tags' true corners are projected; a tag is found by a probit of its size. There are
+// two cases. If the sheet is small enough in the image for estimation::PadAlignment, all tags with
+// their centre in the image count. They count found or not, with a small noise of the corners.
+// Otherwise only the found tags count, with the noise of tag corners. The pose is solved from these
+// corners by the same solver that rendered images use.
 
 #include "sim/sensors/tag_sensor.h"
 
@@ -23,7 +24,7 @@ namespace {
 
 using Corners = Eigen::Matrix<double, 2, 4>;
 
-constexpr double kMinSigma = 1e-6;  // that the solver is told of exact corners [pixel]
+constexpr double kMinSigma = 1e-6;  // for the solver, if corners are exact [pixel]
 
 // The pad in C.
 struct Placement {
@@ -67,7 +68,8 @@ double ShortestSide(const Corners& corners) {
   return shortest;
 }
 
-// As PadAlignment decides: all of the sheet is before the camera, and covers no more than so much.
+// As PadAlignment decides: all of the sheet is before the camera, and its area is not above a
+// limit.
 bool SheetIsAligned(const Placement& placement, const estimation::CameraIntrinsics& camera) {
   constexpr double kHalf = 0.5 * estimation::kPadSheetSide;
   constexpr double kMinDepth = 0.05;  // [m]
@@ -147,7 +149,7 @@ TagSensor::Image TagSensor::Look(const estimation::VehicleState& vehicle,
   for (const estimation::PadTag& tag : estimation::PadTags()) {
     const auto id = static_cast<std::size_t>(tag.id);
     const double luck = noise_.Normal(1.0);
-    // Of the sheet, what is in the image counts, whole tags or not.
+    // All of the sheet in the image counts, whole tags or not.
     in_sheet[id] = InImage(intrinsics_, placement.ToC(tag.center_P));
     if (!visible[id] && !in_sheet[id]) continue;
     corners[id] = CornersOf(tag, placement, intrinsics_);

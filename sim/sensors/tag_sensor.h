@@ -34,8 +34,8 @@ struct TagSensorConfig {
 };
 
 /// Measurement model of the pad camera: which tags are wholly in view and found, and where their
-/// corners appear in the image; the pose is solved from them as from a rendered image. It stands in
-/// for rendering images and detecting tags in them.
+/// corners appear in the image. The pose is solved from the corners as from a rendered image. The
+/// model stands in for rendering images and detecting tags in them.
 class TagSensor {
  public:
   /// `seed` feeds the stream "tag camera". Throws std::invalid_argument naming key, value, range.
@@ -46,8 +46,8 @@ class TagSensor {
   std::optional<estimation::PadSighting> Poll(double t, const estimation::VehicleState& vehicle,
                                               const estimation::PadState& pad);
 
-  /// The same without asking whether an image is due. @param believed the attitude, B to W, that the
-  /// vehicle takes for its own: the deck's normal is read off it.
+  /// The same without asking whether an image is due. @param believed the vehicle's estimate of its attitude, B to W:
+  /// the deck's normal follows from it.
   std::optional<estimation::PadSighting> Sight(double t, const estimation::VehicleState& vehicle,
                                                const estimation::PadState& pad,
                                                const Eigen::Quaterniond& believed);
@@ -61,8 +61,8 @@ class TagSensor {
   Image Look(const estimation::VehicleState& vehicle, const estimation::PadState& pad,
              const Eigen::Quaterniond& believed);
 
-  /// Which of estimation::PadTags() a camera at this pose has in view: all four corners in the
-  /// image, at an admissible angle, nothing in between or on them.
+  /// Which of estimation::PadTags() a camera at this pose has in view. All four corners of such a
+  /// tag are in the image, at an admissible angle, with nothing in between or on them.
   std::array<bool, estimation::kPadTagCount> Visible(const estimation::VehicleState& vehicle,
                                                      const estimation::PadState& pad) const;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What runs at every step or frame allocates nothing; MuJoCo's own allocations count too.
+// Code that runs at every step or frame allocates nothing. MuJoCo's own allocations count too.
 #include <mujoco/mujoco.h>
 
 #include <gtest/gtest.h>
@@ -32,7 +32,7 @@ TEST(Allocation, NoneInStepsAndMeasurements) {
   estimation::DepthFrame frame;
   camera.Capture(world.vehicle(), world.pad(), &frame);
 
-  // Every sensor is on, and what they bring comes late.
+  // Every sensor is on, and measurements come late.
   OwnStateSourceConfig own_config;
   own_config.sensors.odometry.rate_hz = 30.0;
   OwnStateSource own(own_config, 1, world.vehicle(), world.timestep());

@@ -89,7 +89,7 @@ TEST(FlightRenderer, ThePrintedSheetIsNotInItsOwnShadow) {
   for (int v = 45; v < 75; ++v) EXPECT_GT(Brightness(rgb, 83, v), 600) << v;
 }
 
-// A short line and the mark stand whatever a long line has, which loses its end.
+// A long line loses its end; a short line and the mark are drawn whole.
 TEST(FlightRenderer, OfTooManyPiecesTheLastAreLeftOut) {
   FlightRenderer renderer({}, DefaultVehicleMjcf(), SmallView());
   FlightMoment moment = FromAbove();
@@ -140,7 +140,7 @@ TEST(VehicleLooks, LeaveOutTheHull) {
   EXPECT_THAT(looks.geoms, HasSubstr("type='box' size='0.08 0.08 0.03'"));
 }
 
-// As the replay page has them: all of the least radius, or of one that is assumed.
+// As on the replay page: all have the least radius, or an assumed one.
 TEST(VehicleLooks, DiscsHaveTheModelsRadius) {
   EXPECT_EQ(DiscsIn(LooksOf(DefaultVehicleMjcf()).geoms, "0.127"), 4U);
   const std::string without = With(" type=\"cylinder\" size=\"0.127 0.004\"", "");
@@ -154,7 +154,7 @@ TEST(VehicleLooks, OfNoVehicleThereAreNone) {
       HasSubstr("lacks the body"));
 }
 
-// A red plate of 1.2 m by 0.4 m that is a mesh, with its own corners' middle off its geom's origin.
+// A red plate of 1.2 m by 0.4 m as a mesh. The middle of its corners is off its geom's origin.
 TEST(FlightRenderer, DrawsAMeshOfTheVehicle) {
   std::string mjcf = With(
       "<worldbody>",

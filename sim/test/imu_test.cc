@@ -123,7 +123,7 @@ TEST(Imu, AllanVarianceOfTheBiasIsThatOfAWalk) {
   EXPECT_NEAR(rate, 1.0, 0.12);
 }
 
-// The filter's propagation undoes the reading: velocity and attitude to rounding, whatever is flown.
+// The filter's propagation of the readings gives velocity and attitude to rounding, for any flight.
 TEST(Imu, PropagationOfExactReadingsGivesTheStatesBack) {
   Imu imu(Exact(), 1);
   estimation::VehicleState state;

@@ -24,8 +24,8 @@ using test::MessageOf;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-// mju_error from the top of the library and from deep within a step: an exception, not the end of
-// the process, and the library is usable afterwards.
+// mju_error, from the top of the library or from deep within a step, becomes an exception and does
+// not end the process. The library is usable afterwards.
 TEST(MujocoCall, AFatalErrorIsAnException) {
   const MujocoModel model = CompileMjcf(DefaultVehicleMjcf());
   const MujocoData data = MakeMujocoData(*model);
@@ -77,7 +77,7 @@ TEST(MujocoCall, ErrorsOfOneThreadLeaveCompilationInAnotherAlone) {
 
 // A user's own calls in the same process end as they would without us.
 TEST(MujocoCallDeathTest, OutsideOfACallTheHandlerThatWasThereIsAsked) {
-  GTEST_FLAG_SET(death_test_style, "threadsafe");  // in a process where nobody has called yet
+  GTEST_FLAG_SET(death_test_style, "threadsafe");  // in a process without an earlier call
   EXPECT_EXIT(
       {
         mju_user_error = [](const char* message) {

@@ -39,8 +39,8 @@ TEST(Obstacle, SignedDistanceToCylinderByHand) {
   EXPECT_NEAR(SignedDistance(cylinder, {1.8, 0.0, 2.4}), 0.5, 1e-12);
 }
 
-// A ray ends on the surface, nothing of it before is inside, and sphere tracing along it with the
-// signed distance arrives at the same place: two computations that share nothing.
+// A ray ends on the surface, and nothing of it before is inside. Sphere tracing along it with the
+// signed distance arrives at the same place. The two computations share nothing.
 TEST(Obstacle, RaysAgreeWithSphereTracing) {
   RandomStream random(3, "obstacle rays");
   int hits = 0;

@@ -112,8 +112,8 @@ Nees MeanNees(const OwnStateSourceConfig& config, int runs) {
   return nees;
 }
 
-// With the latencies of the sensors, a start from a hover and MuJoCo's integration, which is not that
-// of the filter's model, the covariance still holds.
+// The covariance holds with the latencies of the sensors, a start from a hover, and MuJoCo's integration, which differs
+// from that of the filter's model.
 TEST(OwnStateSource, CovarianceHoldsInTheWorld) {
   const Nees nees = MeanNees({}, 100);
   const char* names[] = {"position", "velocity", "attitude"};

@@ -87,7 +87,8 @@ TEST(PadMotion, DerivativesAreThoseOfThePosition) {
   }
 }
 
-// The ramp's quadrature is no difference quotient's business: Simpson's rule on v with a fine grid.
+// A difference quotient does not check the ramp's quadrature. So v is integrated by Simpson's rule
+// on a fine grid.
 TEST(PadMotion, PositionIsTheIntegralOfTheVelocity) {
   for (const PadMotionConfig& config : Motions()) {
     const PadMotion motion(config);
@@ -230,7 +231,7 @@ TEST(PadMotion, RandomDrivesKeepTheirLimitsAndDiffer) {
   }
 }
 
-// Phases and times as far as a scenario's keys go: no motion runs out of its drive.
+// Phases and times up to the limits of a scenario's keys: no motion runs out of its drive.
 TEST(PadMotion, ChangesItsSpeedAtAnyPhaseAndTime) {
   for (const Kind kind : {Kind::kStopAndGo, Kind::kReversing, Kind::kRandom}) {
     PadMotionConfig config = Config(kind);

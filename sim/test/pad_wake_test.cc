@@ -36,8 +36,8 @@ TEST(PadWake, MovingPadDragsStillAirAlong) {
 }
 
 TEST(PadWake, CarriesTheMomentumOfTheDrag) {
-  // The deficit's momentum, integrated across the flow, is C/2 times the frontal area, at any
-  // distance behind the first diameter: the wake is a disc's of equal area.
+  // At any distance behind the first diameter, the deficit's momentum, integrated across the flow,
+  // is C/2 times the frontal area. So the wake is that of a disc of equal area.
   const PadGeometry geometry;
   const double board = 2.0 * geometry.deck_half_size * geometry.deck_thickness;
   const double box =

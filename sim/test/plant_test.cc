@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A vehicle that is not what its pilot thinks, in the world.
+// A vehicle that differs from the model of its onboard software, in the world.
 #include "touchdown/sim/vehicle/plant.h"
 
 #include <array>

@@ -95,7 +95,7 @@ TEST(TagSensor, TiltAngleAndObstaclesHideThePad) {
   any_angle.max_view_angle_deg = 89.0;
   EXPECT_GT(Count(TagSensor(any_angle, {}, 1).Visible(side, Pad())), 0);
 
-  // A plate between hides what is under it.
+  // A plate in between hides everything under it.
   const ObstacleField plate({Box{{2.0, 1.36, 1.0}, {1.0, 0.2, 0.05}, 0.0}});
   const std::array<bool, 5> visible = TagSensor({}, plate, 1).Visible(Above(2.0), Pad());
   EXPECT_EQ(visible, (std::array<bool, 5>{true, false, false, true, true}));
@@ -119,7 +119,7 @@ TEST(TagSensor, PoseIsInTheBodyFrame) {
   }
 }
 
-// Errors of many sightings from one place over what they claim, and their mean size.
+// Errors of many sightings from one place over their claimed errors, and their mean size.
 struct Errors {
   double position = 0.0;  ///< mean square over the variances
   double yaw = 0.0;
@@ -150,7 +150,8 @@ TEST(TagSensor, NoiseIsWhatItSays) {
   double before = 0.0;
   for (const double height : {0.6, 2.0, 3.0, 5.0}) {
     const Errors errors = Measure(Above(height), Pad());
-    // Of the attitude, which is exact here, a degree of doubt is claimed: never too sure.
+    // The attitude is exact here, but one degree of error is claimed. So the claims are never too
+    // small.
     EXPECT_LT(errors.position, 1.1) << height;
     EXPECT_GT(errors.position, 0.5) << height;
     EXPECT_NEAR(errors.yaw, 1.0, 0.15) << height;

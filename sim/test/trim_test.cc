@@ -57,7 +57,7 @@ TEST(Trim, IsNothingWhereTheRotorsCannotHoldTheVehicle) {
   EXPECT_LT(estimation::Tilt(World(config).vehicle().q_WB), 1e-9);
 }
 
-// What the trim is for: with the commands of the start, the vehicle stays where it is.
+// With the commands of the start, the vehicle stays where it is: this is the purpose of the trim.
 TEST(Trim, AWorldThatComesOutOfAHoverStaysInIt) {
   WorldConfig config;
   config.start.p_WB = {0.0, 0.0, 20.0};

@@ -54,8 +54,8 @@ TEST(TrueClearance, TiltedByHand) {
   }
 }
 
-// The distance to the cylinder's surface, bounded from both sides by sampling the signed distance
-// over it: no sample is nearer than FCL says, and some sample is nearly as near.
+// The distance to the cylinder's surface is bounded from both sides by samples of the signed
+// distance over it. No sample is nearer than FCL says, and some sample is nearly as near.
 TEST(TrueClearance, AgreesWithAnalyticDistancesOnRandomScenes) {
   RandomStream random(23, "clearance scenes");
   const estimation::VehicleModel model = Model();
@@ -100,7 +100,7 @@ TEST(TrueClearance, AgreesWithAnalyticDistancesOnRandomScenes) {
   EXPECT_GT(collided, 50);
 }
 
-// Columns and rings are many shapes each: a vehicle as small as a point is as far as the field says.
+// Columns and rings are many shapes each. For a vehicle as small as a point the distance is that of the field.
 TEST(TrueClearance, ColumnsAndRingsAreExact) {
   RandomStream random(29, "forest points");
   ForestConfig forest = ForestOfKind("A");

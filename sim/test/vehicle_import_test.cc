@@ -35,7 +35,7 @@ std::string ChangedMini(const std::string& from, const std::string& to) {
   return path;
 }
 
-// What is said to that.
+// The message for that.
 std::string Refusal(const std::string& from, const std::string& to) {
   const std::string path = ChangedMini(from, to);
   return test::MessageOf<std::invalid_argument>([&] { LoadVehicleModel(ImportVehicle(path, {})); });
@@ -181,7 +181,7 @@ TEST(VehicleImport, RotorsMayBeSix) {
   EXPECT_LT((world.vehicle().p_WB - start.p_WB).norm(), 1e-3);
 }
 
-// Gears of -1 turn the moments round; how much each can is the caller's to say.
+// Gears of -1 reverse the moments. The caller sets how large each can be.
 TEST(VehicleImport, OneThrustAndThreeMomentsAreAVehicle) {
   AirframeExtras extras;
   EXPECT_THAT(test::MessageOf<std::invalid_argument>(
@@ -241,7 +241,7 @@ TEST(VehicleImport, SensesOfRotationCanBeGiven) {
               HasSubstr("2 senses, the vehicle 4 rotors"));
 }
 
-// Hubs that are not quite square make a little yaw with senses that cannot: too little.
+// Hubs that are not quite square make a little yaw, even with senses that cannot. It is too little.
 TEST(VehicleImport, SensesThatHardlySteerAreCorrectedToo) {
   const std::string path =
       ChangedMini("pos=\" 0.033 -0.033 0.012\"", "pos=\" 0.0335 -0.0325 0.012\"");
@@ -259,7 +259,7 @@ TEST(VehicleImport, SensesThatHardlySteerAreCorrectedToo) {
   EXPECT_GT(estimation::HoverTurn(LoadVehicleModel(ImportVehicle(path, extras))).z(), 5.0);
 }
 
-// In the user's own words, not in those of the text that is made from the file.
+// In the words of the user's file, not of the text that is made from it.
 TEST(VehicleImport, FaultsSpeakOfTheFileAndTheAirframe) {
   const auto said = [](const AirframeExtras& extras) {
     return test::MessageOf<std::invalid_argument>(

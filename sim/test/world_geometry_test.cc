@@ -136,7 +136,7 @@ TEST(WorldGeometry, RaysAgreeWithMuJoCo) {
   RecordProperty("largest_difference_m", std::to_string(largest));
 }
 
-// What the vehicle touches first is where it comes nearest, and then, not before.
+// The vehicle first touches where and when it comes nearest, not before.
 TEST(WorldGeometry, AVehicleThatFallsTouchesEachKind) {
   const Placement tilted{TurnOf(0.3, 0.2, 0.5), {0.0, 0.0, 2.0}};
   const std::vector<Obstacle> kinds = {Box{{0, 0, 1}, {1, 1, 1}, 0.3},
@@ -237,7 +237,7 @@ TEST(MeshShapes, SolidsMayTouch) {
   }
 }
 
-// Also where all of them are turned inside out; one alone within another is no solid.
+// Also where all are turned inside out. A single inverted one within another is no solid.
 TEST(MeshShapes, InsideOutAndCavities) {
   const auto solids = [](const std::vector<TriangleMesh>& parts, const std::vector<bool>& turned) {
     std::vector<Eigen::Vector3d> corners;

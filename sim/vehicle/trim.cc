@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rotor drag depends on the attitude, so the trim is a fixed point; the map contracts by the ratio of
-// rotor drag to weight, a few per cent at the speeds flown. Where it does not, there is no trim to start from.
+// Rotor drag depends on the attitude, so the trim is a fixed point. The map contracts by the ratio of rotor drag to
+// weight, a few per cent at the speeds flown. Where it does not contract, there is no trim.
 #include "sim/vehicle/trim.h"
 
 #include <cmath>

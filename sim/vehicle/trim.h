@@ -10,15 +10,15 @@
 
 namespace touchdown::sim {
 
-/// Attitude and thrust at which a vehicle holds its velocity.
+/// Attitude and thrust with which a vehicle holds its velocity.
 struct Trim {
   Eigen::Quaterniond q_WB = Eigen::Quaterniond::Identity();
   double thrust = 0.0;  ///< of all rotors together [N]
 };
 
-/// Thrust, gravity and the drag of the velocity through air `u_W` [m/s] add up to nothing; B's x
-/// axis points to `yaw` [rad], seen from above. Nothing where the rotors cannot do that. Does not
-/// allocate.
+/// The trim in which thrust, gravity and the drag of the velocity through air `u_W` [m/s] balance.
+/// B's x axis points to `yaw` [rad], seen from above. Empty where the rotors cannot do that. Does
+/// not allocate.
 std::optional<Trim> TrimAt(const estimation::VehicleModel& model, const Eigen::Vector3d& u_W,
                            double yaw);
 

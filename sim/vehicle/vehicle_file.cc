@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reads a vehicle's parameters from the compiled model, not from the text, so that they are those
-// the physics uses whatever units, defaults or elements the file was written with.
+// Reads a vehicle's parameters from the compiled model, not from the text. So they are those that
+// the physics uses, whatever units, defaults or elements the file has.
 
 #include "sim/vehicle/vehicle_file.h"
 
@@ -30,8 +30,8 @@ constexpr double kUnevenFeet = 1.0e-4;        // [m]
 constexpr double kLeastThrustToWeight = 1.2;  // below, there is nothing left to steer with
 constexpr double kLeastTurn = 10.0;           // of roll and pitch [rad/s^2] ...
 constexpr double kLeastYawTurn = 0.5;         // ... and of the heading
-// With the default limits one in three landings beside obstacles fails at 17 rad/s^2, none at 35; with an acceleration of
-// 2 m/s^2 none at 17 either (docs/results/flight_software/tables.md).
+// With the default limits one in three landings beside obstacles fails at 17 rad/s^2, and none at 35. With an
+// acceleration of 2 m/s^2 none fails at 17 either (docs/results/flight_software/tables.md).
 constexpr double kEasyTurn = 25.0;
 
 std::string_view GeomName(const mjModel& m, int geom) { return m.names + m.name_geomadr[geom]; }

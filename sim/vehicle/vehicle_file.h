@@ -30,9 +30,9 @@ std::string ReadVehicleFile(const std::string& path);
 /// Whether it can be turned fast enough to be flown: 10 rad/s^2 about x and y, 0.5 about z. Throws as AllocationOf.
 bool TurnsEnough(const estimation::VehicleModel& model);
 
-/// The vehicle's parameters as read from the model MuJoCo compiles from `mjcf`. Throws
-/// std::invalid_argument with MuJoCo's own message (it names the line) if it is no valid MJCF, or
-/// naming all that the file lacks of the list above.
+/// The vehicle's parameters as read from the model MuJoCo compiles from `mjcf`.
+/// @throws std::invalid_argument with MuJoCo's own message if it is no valid MJCF. Else the message
+/// names all items of the list above that the file lacks. MuJoCo's message names the line.
 estimation::VehicleModel LoadVehicleModel(const std::string& mjcf);
 
 /// The same, but what the file lacks is added to `findings`; nothing then.

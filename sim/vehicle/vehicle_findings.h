@@ -12,10 +12,10 @@ struct VehicleFinding {
   std::string remedy;
 };
 
-/// A figure as a sentence has it: four digits.
+/// A figure for a sentence: four digits.
 std::string Figure(double value);
 
-/// All problems of a vehicle's file: a user can fix them in one go.
+/// All problems of a vehicle's file, so that a user can fix them in one go.
 class VehicleFindings {
  public:
   /// The vehicle cannot be flown before this is fixed.

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The file is compiled and placed at its reference pose; everything is read from there in the frame of
-// the body with the free joint. The rigid bodies below it are put together by the parallel axis theorem.
-// What is written is the vehicle alone, so that nothing else of the file (other bodies, options,
-// contacts, meshes) can touch the simulation.
+// The file is compiled and placed at its reference pose. Everything is read from there in the frame of the body with
+// the free joint. The rigid bodies below it are combined by the parallel axis theorem. Only the vehicle is written. So
+// nothing else of the file (other bodies, options, contacts, meshes) can affect the simulation.
 
 #include "sim/vehicle/vehicle_import.h"
 
@@ -154,7 +153,7 @@ class Import {
     inertia_ = R_WB_.transpose() * inertia * R_WB_;
   }
 
-  // Of the actuator before its gear, as MuJoCo clamps it: control, activation, gain, force.
+  // The actuator's force before its gear, as MuJoCo clamps it: control, activation, gain, force.
   std::array<double, 2> ForceRange(int i) const {
     std::array<double, 2> range = {m_.actuator_ctrlrange[2 * i], m_.actuator_ctrlrange[2 * i + 1]};
     const auto clamp = [&](const mjtNum* limits) {
@@ -178,7 +177,7 @@ class Import {
     if (static_cast<int>(motors_.size()) == m_.nu) CheckLags();
   }
 
-  // What it does to the body, from the force and the moment of its gear in the site's frame.
+  // Its effect on the body, from the force and the moment of its gear in the site's frame.
   std::optional<Motor> ReadMotor(int i) {
     const std::string name = Quoted(m_, m_.name_actuatoradr[i], "actuator", i);
     const std::size_t before = findings_.faults().size();
@@ -223,7 +222,8 @@ class Import {
       Fault(name + " lags by " + Figure(motor.lag) + " s", "allowed is 0.005 to 1 s");
     }
     if (findings_.faults().size() != before) return std::nullopt;
-    // A unit of its command is a newton, or a newton metre of what makes a moment alone.
+    // A unit of its command is a newton. For an actuator that makes a moment alone it is a newton
+    // metre.
     const double unit = push > 0.0 ? force_B.z() : moment_B.norm();
     const std::array<double, 2> force = ForceRange(i);
     estimation::Actuator& actuator = motor.actuator;
@@ -273,8 +273,8 @@ class Import {
     }
   }
 
-  // The senses that the user gives; else, on request, where those of the file cannot steer, each other than its
-  // neighbour's around the body.
+  // The senses that the user gives. Else, on request and if the file's senses cannot steer, senses that alternate
+  // around the body.
   void SetSenses() {
     std::vector<estimation::Actuator*> rotors;
     for (Motor& motor : motors_) {
@@ -321,7 +321,7 @@ class Import {
       const bool as_first = (static_cast<std::ptrdiff_t>(k) - first) % 2 == 0;
       turn(*rotors[around[k]], as_first ? sense : -sense);
     }
-    if (!CanSteer()) {  // the senses are not what it lacks
+    if (!CanSteer()) {  // the senses are not the fault
       motors_ = before;
       return;
     }
@@ -335,7 +335,7 @@ class Import {
         "look whether your rotors turn so: airframe.rotor_senses: [" + signs + "]");
   }
 
-  // What the user says of actuators that make a moment alone, about the axis that each turns about most.
+  // The user's values for actuators that make a moment alone, each for the axis about which it turns most.
   void SetMoments() {
     if (extras_.moment_max.isZero()) return;
     bool any = false;
@@ -391,7 +391,7 @@ std::string InertiaText(const Eigen::Matrix3d& inertia) {
   return "fullinertia='" + VectorText(moments) + " " + VectorText(products) + "'";
 }
 
-// The cylinder that collides and the feet, of the user or around what there is.
+// The colliding cylinder and the feet: the user's, or fitted around the geoms.
 void Import::SetBody() {
   const bool own_hull = !extras_.hull.isZero(), own_feet = !extras_.feet.isZero();
   radius_ = own_hull ? extras_.hull[0] : outline_.radius;

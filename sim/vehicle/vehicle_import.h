@@ -23,17 +23,17 @@ struct AirframeExtras {
   Eigen::Vector2d feet = Eigen::Vector2d::Zero();
   /// +1 or -1 for each rotor in the file's order: the sign of its reaction torque about z_B. Empty: the file's.
   std::vector<double> rotor_senses;
-  /// Where those of the file cannot make a yaw moment, neighbours turn against each other, with a warning.
+  /// If the file's signs cannot make a yaw moment, neighbours turn against each other, with a warning.
   bool alternate_senses = false;
   /// Of actuators that make a moment alone, about x, y and z [N m]. Zero: the file's.
   Eigen::Vector3d moment_max = Eigen::Vector3d::Zero();
 };
 
-/// MJCF text in the form of sim/vehicle/vehicle_file.h of the multirotor in the file at `path`. A file in that
-/// form is returned as it is. Else it must have one free joint and no other, and four to eight actuators that
-/// push along the body's z axis at a site, or make a moment alone: names do not matter, nor does where the mass is,
-/// and bodies may be joined rigidly. Mass, inertia, arms, limits (of control and force) and reaction torques are read
-/// from the compiled model; its geoms, meshes too, count as the outline only. What collides is the hull
+/// MJCF text, in the form of sim/vehicle/vehicle_file.h, of the multirotor in the file at `path`. A file in that form
+/// is returned as it is. Another file must have exactly one joint, a free one, and four to eight actuators. Each
+/// actuator pushes along the body's z axis at a site, or makes a moment alone. Names and the place of the mass do not
+/// matter, and bodies may be joined rigidly. Mass, inertia, arms, limits (of control and force) and reaction torques
+/// are read from the compiled model. Its geoms, including meshes, count as the outline only. What collides is the hull
 /// and four feet.
 /// B is at the centre of mass, with the axes of the body that has the free joint.
 /// Throws std::invalid_argument with MuJoCo's message, or saying all that the file lacks of this.

@@ -43,7 +43,7 @@ void CopyMesh(const mjModel& m, int mesh, VehicleShape* shape) {
   }
 }
 
-// Nothing for what is not to be seen: wholly transparent, or in a group that MuJoCo's viewer does not show.
+// Nothing for an invisible geom: it is wholly transparent, or in a group that MuJoCo's viewer does not show.
 std::optional<VehicleShape> ShapeOfGeom(const mjModel& m, int geom) {
   constexpr int kLastShown = 2;
   const float* rgba = m.geom_rgba + 4 * geom;

@@ -15,7 +15,7 @@ namespace touchdown::sim {
 struct VehicleShape {
   enum class Kind { kSphere, kCapsule, kEllipsoid, kCylinder, kBox, kMesh };
   Kind kind = Kind::kBox;
-  /// Half extents along G's axes (box, ellipsoid); radius (sphere); radius and half the height, a capsule's without its caps [m].
+  /// Half extents along G's axes (box, ellipsoid); radius (sphere); radius and half height without caps (others) [m].
   Eigen::Vector3d size = Eigen::Vector3d::Zero();
   Eigen::Vector3d p_BG = Eigen::Vector3d::Zero();  ///< [m]
   Eigen::Quaterniond q_BG = Eigen::Quaterniond::Identity();
@@ -25,12 +25,12 @@ struct VehicleShape {
 };
 const char* ToString(VehicleShape::Kind kind);
 
-/// What is to be seen of the vehicle whose MJCF text is `mjcf` (vehicle_file.h): its geoms but for `hull` and those that
-/// are wholly transparent or in a group from 3 on. Of a vehicle that then has nothing but feet, arms to these and to the rotors.
+/// The visible shapes of the vehicle whose MJCF text is `mjcf` (vehicle_file.h). `hull`, wholly transparent geoms and
+/// those in a group from 3 on are left out. If only feet remain, arms to the feet and rotors are added.
 /// Throws std::invalid_argument as LoadVehicleModel.
 std::vector<VehicleShape> VehicleShapes(const std::string& mjcf);
 
-/// Of the rotors' discs as they are drawn: the model's, or 0.1 m where its file does not tell [m].
+/// Radius of the rotors' discs as drawn: the model's, or 0.1 m where its file does not give it [m].
 double DrawnRotorRadius(const estimation::VehicleModel& model);
 
 }  // namespace touchdown::sim

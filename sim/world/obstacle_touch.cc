@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// MuJoCo 2.2 collides meshes as their convex hulls, and thousands of boxes slow its every step: it has ground, deck and
-// vehicle alone. Most of a flight nothing is within the vehicle's reach, which the field's tree tells in a microsecond.
+// MuJoCo 2.2 collides meshes as their convex hulls, and thousands of boxes slow its every step. So it has only ground,
+// deck and vehicle. For most of a flight nothing is within the vehicle's reach. The field's tree finds that in a
+// microsecond.
 #include "sim/world/obstacle_touch.h"
 
 #include <algorithm>

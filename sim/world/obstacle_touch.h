@@ -20,8 +20,8 @@ struct Touch {
   Eigen::Vector3d p_W = Eigen::Vector3d::Zero();  ///< [m]
 };
 
-/// Finds out when the vehicle's parts touch obstacles: which kinds there are and how many does not matter, nor is anything
-/// pushed back. By FCL on the shapes themselves, a mesh of the vehicle by its triangles.
+/// Finds out when the vehicle's parts touch obstacles. The kinds and the number of obstacles do not matter, and nothing
+/// is pushed back. By FCL on the shapes themselves; a mesh of the vehicle counts by its triangles.
 class ObstacleTouch {
  public:
   /// @param geoms the vehicle's parts that can touch.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A start is accepted if the cylinder that holds the vehicle touches nothing: obstacles and pad by
-// FCL, the ground by the cylinder's lowest point in closed form.
+// A start is accepted if the cylinder that holds the vehicle touches nothing. Obstacles and pad are
+// checked by FCL, the ground by the cylinder's lowest point in closed form.
 
 #include "sim/world/start_check.h"
 

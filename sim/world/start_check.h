@@ -6,10 +6,10 @@
 
 namespace touchdown::sim {
 
-/// Throws std::invalid_argument, naming the thing, its value and the allowed range, if the pad's
-/// motion or shape is out of range, the vehicle's start state is not finite, or the vehicle starts
-/// in contact with an obstacle, the pad or the ground. World's constructor asks it; a caller with a
-/// scenario file can ask before.
+/// Checks that the pad's motion and shape are in range and the vehicle's start state is finite. The
+/// vehicle must not start in contact with an obstacle, the pad or the ground. World's constructor
+/// calls it; a caller with a scenario file can call it before.
+/// @throws std::invalid_argument naming the thing, its value and the allowed range.
 void CheckStart(const WorldConfig& config, const estimation::VehicleModel& model);
 
 }  // namespace touchdown::sim

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One MuJoCo model and its data behind plain types. A step sets the pad's drives to follow its path
-// (velocity plus a pull towards the position), the rotors' commands and the aerodynamic force,
-// calls mj_step, and reads the contacts off. mj_step evaluates contacts, forces and velocities
-// (cvel) at the beginning of the step and then integrates: after it, qpos and qvel are new,
+// (velocity plus a pull towards the position), the rotors' commands and the aerodynamic force. It
+// then calls mj_step and reads the contacts. mj_step evaluates contacts, forces and velocities
+// (cvel) at the beginning of the step and then integrates. After it, qpos and qvel are new;
 // everything else is old. MuJoCo's free joint: qpos is position and quaternion (w first) in W,
-// qvel[0:3] the velocity in W, qvel[3:6] the angular rate in B. https://mujoco.readthedocs.io,
-// "Computation"; traps measured on 2.2.2.
+// qvel[0:3] is the velocity in W, qvel[3:6] is the angular rate in B. Source:
+// https://mujoco.readthedocs.io, "Computation"; traps measured on 2.2.2.
 
 #include "sim/world/world.h"
 
@@ -186,7 +186,7 @@ void World::Impl::FindIndices() {
   vehicle_qpos_ = m->jnt_qposadr[m->body_jntadr[vehicle_body_]];
   vehicle_qvel_ = m->body_dofadr[vehicle_body_];
 
-  std::vector<int> parts;  // of the vehicle, that touch what stands
+  std::vector<int> parts;  // of the vehicle, that can touch obstacles
   roles_.resize(static_cast<std::size_t>(m->ngeom));
   for (int geom = 0; geom < m->ngeom; ++geom) {
     const std::string_view name = m->names + m->name_geomadr[geom];
@@ -282,7 +282,7 @@ void World::Impl::Step(const estimation::Commands& commands, const Eigen::Vector
   ReadContacts();
 }
 
-// Drag acts at the centre of mass; what the ground adds to a rotor's thrust acts at its hub.
+// Drag acts at the centre of mass. The ground effect on a rotor's thrust acts at its hub.
 void World::Impl::PushByAir(const Eigen::Vector3d& wind_W) {
   const estimation::VehicleState now = Vehicle();
   const Eigen::Matrix3d R_WB = now.q_WB.toRotationMatrix();
@@ -338,7 +338,7 @@ void World::Impl::ReadContacts() {
     if (vehicle.part == GeomRole::Part::kFoot) foot_force_ += contact.normal_force;
     contacts_.push_back(contact);
   }
-  // Positions are still those at the step's beginning, as all that a step finds.
+  // Positions are still those at the step's beginning, like all results of a step.
   const auto touch = touch_->Find(*d, Vec3(d->xpos + 3 * vehicle_body_));
   if (!touch) return;
   const Eigen::Vector3d v_W = PointVelocity(vehicle_body_, touch->p_W);
@@ -408,8 +408,8 @@ std::shared_ptr<const PadCourse> CourseOf(const WorldConfig& config) {
   return std::make_shared<PadMotion>(config.pad_motion);
 }
 
-// A drive's velocity lags by inertia / gain times the acceleration, and its position by this over the
-// position gain; twice that is allowed, and what a step of the physics leaves.
+// A drive's velocity lags by inertia / gain times the acceleration. Its position lags by this over the position gain.
+// Twice that is allowed, plus the error of one step of the physics.
 World::PadLag World::MaxPadLag() const {
   const PadMotionBounds motion = impl_->course_->bounds();
   const double velocity = 2.0 * PadDrive::kMass / PadDrive::kVelocityGain * motion.acceleration;

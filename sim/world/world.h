@@ -24,13 +24,13 @@ struct WorldConfig {
   ObstacleField obstacles;
   PadGeometry pad;
   PadMotionConfig pad_motion;
-  /// Drives the pad instead, if there is one, on a deck as high as pad_motion says.
+  /// If set, it drives the pad instead, on a deck as high as pad_motion says.
   std::shared_ptr<const PadCourse> pad_course;
   std::string vehicle_mjcf;        ///< text of the vehicle's MJCF file; empty: DefaultVehicleMjcf()
   estimation::VehicleState start;  ///< state at t = 0; its time stamp is not read
-  /// Given: the vehicle comes out of a hover in air of this velocity [m/s]. Of the start's attitude
-  /// only the yaw counts then, and the rotors have the thrust that balances the wind. Where they
-  /// cannot balance it, the start is as it is without.
+  /// If given, the vehicle comes out of a hover in air of this velocity [m/s]. Then only the yaw of
+  /// the start's attitude counts, and the rotors have the thrust that balances the wind. Where they
+  /// cannot balance it, the start is as without it.
   std::optional<Eigen::Vector3d> hover_air_W;
   double timestep = 0.002;     ///< [s], in [1e-4, 0.005]
   PlantFactors plant;          ///< how the simulated vehicle differs from its file
@@ -40,7 +40,7 @@ struct WorldConfig {
 /// What drives the pad of this world. Throws std::invalid_argument as PadMotion does.
 std::shared_ptr<const PadCourse> CourseOf(const WorldConfig& config);
 
-/// What touches what.
+/// Kinds of contact.
 enum class ContactKind {
   kFootDeck,    ///< a foot on the deck: how a landing looks
   kHullDeck,    ///< any other part of the vehicle on the deck
@@ -66,20 +66,20 @@ struct Contact {
 /// and commands give the same bits.
 class World {
  public:
-  /// Rotors start at the thrust of a hover, the pad on its path at its speed. Throws std::invalid_argument
-  /// naming the thing, its value and the allowed range; also when the vehicle starts in contact
-  /// with an obstacle or the ground, or ground effect is wanted of rotors without a radius.
+  /// Rotors start at the thrust of a hover, the pad on its path at its speed.
+  /// @throws std::invalid_argument naming the thing, its value and the allowed range. A start in contact with an
+  /// obstacle or the ground is such a fault, and so is ground effect for rotors without a radius.
   explicit World(const WorldConfig& config);
   World(World&&) noexcept;
   World& operator=(World&&) noexcept;
   ~World();
 
-  /// Advances one time step. Does not allocate but where an obstacle is within the vehicle's reach.
+  /// Advances one time step. Allocates only where an obstacle is within the vehicle's reach.
   /// @param rotor_thrust_commands per rotor [N]; clipped to the rotors' limits, reached with their
   /// lag.
   /// @param wind_W velocity of the air [m/s].
-  /// Throws std::invalid_argument if a command or the wind is not finite, std::runtime_error if the
-  /// physics failed (the sentence says how); such a World throws at every later step too.
+  /// @throws std::invalid_argument if a command or the wind is not finite, std::runtime_error if
+  /// the physics failed (the message says how). Such a World throws at every later step too.
   void Step(const estimation::Commands& rotor_thrust_commands,
             const Eigen::Vector3d& wind_W = Eigen::Vector3d::Zero());
 
@@ -88,7 +88,7 @@ class World {
   const estimation::VehicleModel& model() const;  ///< as its file says: what may be known of it
   const estimation::VehicleModel& plant() const;  ///< as it is simulated
   const std::shared_ptr<const PadCourse>& pad_course() const;
-  /// How far the pad may be off its motion: its drive needs a force, which is a lag. Nothing lands.
+  /// How far the pad may be off its motion while nothing lands on it. Its drive needs a force, so it lags.
   struct PadLag {
     double position = 0.0;  ///< [m]
     double velocity = 0.0;  ///< [m/s]
@@ -101,24 +101,24 @@ class World {
   /// True state of the vehicle now.
   estimation::VehicleState vehicle() const;
 
-  /// True state of the pad now, read from its joints: p, v, yaw and yaw rate; a is that of the step
-  /// just taken, j is not known and zero. The yaw is not wrapped.
+  /// True state of the pad now, read from its joints: p, v, yaw and yaw rate. a is that of the step
+  /// just taken; j is unknown and zero. The yaw is not wrapped.
   estimation::PadState pad() const;
 
   /// Thrust of each rotor now, after its lag [N].
   estimation::Commands rotor_thrusts() const;
 
-  /// What the rotors were told, after their lag [N]: a plant's thrusts are others.
+  /// The rotors' commands after their lag [N]. The thrusts of a plant differ from them.
   estimation::Commands rotor_commands() const;
 
   /// Drag applied in the step just taken, in W [N].
   Eigen::Vector3d drag_force() const;
 
-  /// What the ground effect added to the rotors' thrust in the step just taken, in all [N].
+  /// Thrust that the ground effect added to the rotors in the step just taken, in total [N].
   double ground_effect_thrust() const;
 
-  /// Contacts of the step just taken; positions, velocities and forces are those at its beginning,
-  /// so that the step in which a contact first appears holds the velocity before the impact.
+  /// Contacts of the step just taken. Positions, velocities and forces are those at its beginning.
+  /// So the step in which a contact first appears holds the velocity before the impact.
   const std::vector<Contact>& contacts() const;
 
   /// Sum of the normal forces on the feet in the step just taken, whatever they stand on.

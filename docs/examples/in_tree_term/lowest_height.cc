@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Keeps the way, but for its two ends, above a height over the ground: u = height - z for every
-// control point that is free to move. Convex. Source: this example.
+// Keeps the trajectory, except for its two ends, above a height over the ground. u = height - z for
+// every control point that is free to move. Convex. Source: this example.
 
 #include "touchdown/planning/problem/landing_term.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The whole program `touchdown` with a solver backend of one's own: the chord method, Newton's method
-// that keeps a factor of the Hessian for several steps. Each step is halved until the cost decreases.
+// The whole program `touchdown` with its own solver backend, the chord method. This is Newton's method that keeps a
+// factor of the Hessian for several steps. Each step is halved until the cost decreases.
 
 #include <memory>
 #include <utility>
@@ -41,7 +41,7 @@ class ChordSolver : public solvers::SolverBackend {
   }
 
   SolveStatus Run(const solvers::View& view, Eigen::VectorXd y, solvers::Evaluator* evaluator) {
-    const solvers::ShareScope own(evaluator, solvers::Share::kNative);  // but for evaluations
+    const solvers::ShareScope own(evaluator, solvers::Share::kNative);  // except evaluations
     const int renew = static_cast<int>(options().Get("renew"));
     Eigen::VectorXd gradient, trial;
     for (int k = 0; !evaluator->must_stop(); ++k) {

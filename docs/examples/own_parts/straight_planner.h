@@ -10,8 +10,8 @@ namespace own {
 
 using namespace touchdown::planning;  // NOLINT: an example
 
-/// A planner in as little as there can be: the quintic from where the vehicle is to where the pad will
-/// be, or to contact with it, whatever stands between. Nothing is certified.
+/// A planner that is as short as possible: the quintic from the vehicle to where the pad will be, or to contact with
+/// it. It ignores obstacles. Nothing is certified.
 class StraightPlanner : public Planner {
  public:
   explicit StraightPlanner(const Limits& limits) : limits_(limits) {}

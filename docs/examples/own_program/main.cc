@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The whole program `touchdown` with a term of one's own: keeps the pad's distance to every knot
-// below `reach`, as seen at the knot's own time. u = |p(t_k) - P(t_k)|^2 / (2 reach) - reach / 2.
+// The whole program `touchdown` with its own term. It keeps the pad's distance to every knot below
+// `reach`, as seen at the knot's own time:
+// u = |p(t_k) - P(t_k)|^2 / (2 reach) - reach / 2.
 
 #include "touchdown/evaluation/program/program.h"
 #include "touchdown/planning/problem/term_kinematics.h"

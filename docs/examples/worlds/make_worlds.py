@@ -17,7 +17,7 @@ import numpy as np
 
 CELL = 0.1  # of the building [m]
 BELIEF_CELL = 0.2  # of the beliefs [m]
-FREE, OCCUPIED, INNER = 1, 2, 3  # what OctoMap's binary format says of a child; 0: not known
+FREE, OCCUPIED, INNER = 1, 2, 3  # codes of a child in OctoMap's binary format; 0: not known
 
 
 def building(rng):
@@ -55,7 +55,7 @@ def building(rng):
 
 
 def belief(walls):
-    """A yard of 16 x 12 x 4 m that is free but for walls of 3 m: each from (x, y) to (x, y), in m."""
+    """A yard of 16 x 12 x 4 m, free except for walls of 3 m height. Each wall is from (x, y) to (x, y) [m]."""
     cells = np.full((80, 60, 20), FREE)
     for low, high in walls:
         (x0, y0), (x1, y1) = ((np.asarray(p) / BELIEF_CELL).round().astype(int) for p in (low, high))
@@ -69,7 +69,7 @@ def write_octomap(path, cells, edge):
     count = 0
 
     def node(low, side):
-        """What all of it is, or the bytes of the node."""
+        """The state of all its cells if they agree, or the bytes of the node."""
         nonlocal count
         x, y, z = low
         part = cells[x : x + side, y : y + side, z : z + side]

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""What Python adds: to a solve, by a term, to a sweep. Prints a table (docs/python.md).
+"""The overhead of Python: in a solve, by a term, in a sweep. Prints a table (docs/python.md).
 
     PYTHONPATH=build/release/python python3 evaluation/python/bench/package_times.py
 """
@@ -70,7 +70,7 @@ def evaluation_us(problem, n=2000):
 
 
 def sweep_ratio(pairs=6, trials=60):
-    """Both with a result file, in turns: which one is first matters by some percent."""
+    """Both with a result file, in turns, because the order changes the times by some percent."""
     words = [str(td.program_path()), "sweep", "straight_turn", "--trials", str(trials), "--jobs", "2"]
 
     def by_program(seed):

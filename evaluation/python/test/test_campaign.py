@@ -18,7 +18,7 @@ TABLES = ("planned", "variation", "varied_key", "trial", "cell", "cell_value")
 
 
 def reading(path):
-    """Not read only: what a killed writer left must be recovered."""
+    """Opens for writing, too, because what a killed writer left must be recovered."""
     return contextlib.closing(sqlite3.connect(f"file:{path}?mode=rw", uri=True))
 
 

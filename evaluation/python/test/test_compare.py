@@ -18,7 +18,7 @@ def test_a_profile_by_hand():
     }
     curves = compare.profile(times, 3)
     assert curves["a"][0].tolist() == [1.0, 2.0]
-    assert np.allclose(curves["a"][1], [1 / 3, 2 / 3])  # one problem nobody solved
+    assert np.allclose(curves["a"][1], [1 / 3, 2 / 3])  # one problem without a solution
     assert curves["b"][0].tolist() == [1.0, 2.0]
     assert curves["c"][0].tolist() == [8.0] and np.allclose(curves["c"][1], [1 / 3])
     assert compare.label_of("c", 1, 1, 3) == "c (1 of 3; 1 of 3 run)"

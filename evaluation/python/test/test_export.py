@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""`touchdown export` as a user has it: what it says, and how it fails. What is in the file: evaluation/mcap/node."""
+"""`touchdown export` for a user: its output and its failures. evaluation/mcap/node tests the content of the file."""
 import subprocess
 
 import pytest

@@ -44,7 +44,7 @@ def plain(make_environment):
 
 @pytest.fixture
 def unnamed(monkeypatch, tmp_path_factory):
-    """Nothing says which Python is meant; what there is to say it with."""
+    """An environment that does not name a Python, and the means to name one."""
     for name in ("TOUCHDOWN_PYTHON", "VIRTUAL_ENV", "CONDA_PREFIX", "PYTHONPATH"):
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setenv("PATH", str(tmp_path_factory.mktemp("empty")))

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Whatever is given to a function of the package, what comes back is a result or an exception with a sentence.
-
-A crash would take pytest along: the calls are made in a process of their own.
-"""
+"""For any arguments a function of the package gives a result or an exception with a sentence. A crash would end pytest,
+so the calls are made in a process of their own."""
 import os
 import subprocess
 import sys

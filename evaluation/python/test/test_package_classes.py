@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a class of one's own may say of itself: it is looked at when it is made."""
+"""Attributes of a user's class: they are checked when the class is made."""
 import numpy as np
 import pytest
 

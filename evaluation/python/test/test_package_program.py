@@ -15,7 +15,7 @@ from touchdown import _program
 
 @pytest.fixture
 def place(monkeypatch, tmp_path):
-    """The package stands in this folder below tmp_path, and nothing else is known of a program."""
+    """The package is in this folder below tmp_path, and no other program is known."""
 
     def put(folder):
         package = tmp_path / folder

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What Python's values become in scenarios and on the program's command line."""
+"""Python's values in scenarios and on the program's command line."""
 import json
 import math
 from pathlib import Path

@@ -24,7 +24,7 @@ WORDS += ("--vary", "controller=geometric,paper", "--vary", "gps.sigma=0.1..0.5"
 
 @pytest.fixture(scope="module")
 def own_file(run, tmp_path_factory):
-    """What the program itself writes."""
+    """The output of the program itself."""
     path = tmp_path_factory.mktemp("own") / "own.db"
     done = run(*WORDS, "--jobs", "1", "--db", str(path))
     assert done.returncode == 0, done.stderr

@@ -86,7 +86,7 @@ limits = td.Limits(speed=2.0)
 
 def test_the_stub_holds_against_the_module(tmp_path):
     pytest.importorskip("mypy")
-    # Classes have pybind11's metaclass. What a constructor takes by name it looks at by itself.
+    # Classes have pybind11's metaclass. A constructor checks arguments by name itself.
     allowed = tmp_path / "allowed"
     allowed.write_text("touchdown\\._touchdown\\.[A-Z]\\w+(\\.__init__)?\n", encoding="utf-8")
     done = subprocess.run(

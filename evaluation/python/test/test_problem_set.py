@@ -37,7 +37,7 @@ def test_the_table_holds_every_solve_and_refusal(made):
                 (cell["problem"], cell["backend"]),
             )
             assert right.fetchone()[0] == cell["right"]
-        # What is right was feasible, at the optimum's cost or at another that is known, and confirmed.
+        # A right solve was feasible, at the optimum's cost or another known one, and confirmed.
         steps = db.execute("SELECT MAX(max_violation) FROM solve WHERE verdict = 'right'")
         assert steps.fetchone()[0] < 1e-5
 

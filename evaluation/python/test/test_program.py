@@ -297,7 +297,7 @@ def test_a_sweep_flies_into_its_file_once(run, tmp_path):
 
 
 def rows_of(path):
-    """Everything of a study but what the wall clock says."""
+    """Everything of a study except wall-clock times."""
     with sqlite3.connect(path) as db:
         return {
             table: db.execute(f"SELECT * FROM {table} ORDER BY rowid").fetchall()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A small real study from end to end: flown, reported, gone on with, reported again without flying."""
+"""A small real study from end to end: flown, reported, continued, reported again without flying."""
 import json
 import re
 import shutil

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Every statistic of a study's report against values that are known otherwise."""
+"""Every statistic of a study's report against values from another source."""
 import numpy as np
 import pandas as pd
 import pytest
@@ -113,7 +113,8 @@ def test_half_of_all_is_half():
     times = np.arange(1.0, 101.0)
     curve = statistics.time_to_land(times, times <= 50, np.full(100, 200.0))
     assert curve.median.value == 50.0 and curve.landed[-1] == 0.5
-    # The bounds of the median are where those of the share cross one half: k of 100 has 50 % within it from 40 to 60.
+    # The bounds of the median are where those of the share cross one half. The interval of k of 100 holds 50 % for k
+    # from 40 to 60.
     assert curve.median.lo == 40.0 and curve.median.hi == np.inf
     whole = statistics.time_to_land(times, times > 0, np.full(100, 200.0))
     assert (whole.median.value, whole.median.lo, whole.median.hi) == (50.0, 40.0, 61.0)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The picture of a sweep. Sweeps are flown for two simulated seconds, too short to land; what landings
-look like is tried on their tables, changed by hand."""
+"""The picture of a sweep. Sweeps are flown for two simulated seconds, too short to land. Pictures of landings are
+tested with tables that are changed by hand."""
 import shutil
 import sqlite3
 

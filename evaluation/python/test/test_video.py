@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""`--video` as a user has it: what the file is, and how it fails."""
+"""`--video` for a user: the file and the failures."""
 import json
 import os
 import subprocess

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The package as it was built: tests that import this are skipped where it was not. CTest tells of a module that it built.
-And what tests of it share."""
+"""The package as it was built. Tests that import this are skipped if it was not built. CTest tells of a module that it
+built. Also functions that its tests share."""
 import contextlib
 import ctypes
 import os
@@ -22,7 +22,7 @@ except ImportError as missing:
 
 
 def resident_kb():
-    """What this process holds, without what its allocator has not given back."""
+    """The memory of this process, without memory that its allocator keeps."""
     ctypes.CDLL("libc.so.6").malloc_trim(0)
     with open("/proc/self/statm", encoding="ascii") as file:
         return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE") // 1024
@@ -32,7 +32,7 @@ def resident_kb():
 
 
 def alive(process):
-    """Not gone, and no zombie that nobody has waited for."""
+    """The process still runs: it is not gone and no zombie."""
     try:
         with open(f"/proc/{process}/stat", encoding="utf-8") as stat:
             return stat.read().rsplit(")", 1)[1].split()[0] != "Z"

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 _LOST = ("error", "crashed", "hung")
 
-# The program's own ranges: what flies in this process is held to them, too.
+# The program's own ranges. They also hold for flights in this process.
 _RANGES: Dict[str, Range] = {
     "trials": (1, 10**6), "seed": (0, 2**53), "jobs": (1, 1024), "trial_limit": (0.1, 1e6),
     "problems": (1, 10**5), "every": (1, 10**5), "starts": (1, 1000), "repeats": (1, 1000), "gap": (1e-9, 1.0),
@@ -39,12 +39,12 @@ class SweepResult:
     """What `sweep` flew.
 
     trials    a row a trial: columns of the tables trial and timing (docs/record.md), one for each varied key, and
-              `command`, which flies it alone; with a scenario that was a dictionary it names a file that is gone
-    cells     a row for each combination of listed values: these, planned and flown trials, succeeded, `rate` and its
-              95 % interval `rate_lo`, `rate_hi`, medians of the landed
+              `command`, which flies it alone. If the scenario was a dictionary, the command names a file that is gone
+    cells     a row for each combination of listed values: the values, planned and flown trials, succeeded, `rate` and
+              its 95 % interval `rate_lo`, `rate_hi`, medians of the landed
     manifest  {key: value}: build, machine, `scenario_yaml` of the first trial
-    command   what was run, without what was temporary; None: flown in this process
-    db        the file that holds them; None: it is not kept
+    command   what was run, without temporary files; None: flown in this process
+    db        the file of the trials; None: it is not kept
     report    the program's own report, which `print` shows
     """
 
@@ -67,12 +67,12 @@ class SweepResult:
 class CompareResult:
     """What `compare` measured.
 
-    summary   a row a backend (docs/record.md); of a set of known problems a row for each problem and backend
+    summary   a row a backend (docs/record.md); for a set of known problems a row for each problem and backend
     solves    a row a solve: table solve
     problems  table problem
-    refusals  who did not run all, and why: table refusal
+    refusals  backends that did not run all, and why: table refusal
     manifest  {key: value}: settings, build, machine
-    command   what was run, without what was temporary; None: solved in this process
+    command   what was run, without temporary files; None: solved in this process
     db        the file; None: it is not kept
     """
 
@@ -134,7 +134,7 @@ def _command(words: Sequence[Word]) -> str:
 
 
 def _trials(db: Path) -> Dict[str, Any]:
-    """Of a file of trials: what a SweepResult holds."""
+    """The content of a SweepResult, from a file of trials."""
     import pandas as pd
 
     with open_result(db) as reading:
@@ -196,7 +196,7 @@ def _check_ranges(**options: Any) -> None:
 
 
 def _check_in_process(jobs: int, db: Optional[PathLike], **options: Any) -> None:
-    """What cannot be done with parts of Python's. Raises ValueError."""
+    """Refuses options that cannot be used with parts written in Python. Raises ValueError."""
     if db is not None:
         try:
             check_folder(db)
@@ -232,18 +232,18 @@ def sweep(
 
     scenario     a shipped name, a path, or a dictionary of keys (docs/scenario.md)
     seed         of the sweep; those of its trials follow from it
-    vary         {key: values}: a list of values that are taken in turn, or a tuple (lo, hi) that is drawn from
+    vary         {key: values}: a list of values that are taken in turn, or a tuple (lo, hi) to draw from
     set          {key: value}, in every trial; planner and backend are short for two of these keys
-    db           keeps the trials in an SQLite file; one of the same sweep is gone on with
+    db           keeps the trials in an SQLite file; a file of the same sweep is continued
     html         writes the report as a page; with record="failures" or "all" it links pages of these flights
     picture      PNG of success and time to land over what is varied
     trial_limit  wall time after which a trial is given up [s]
-    retry        flies again what crashed, hung or ended in an error, of the trials in db
+    retry        flies trials in db again that crashed, hung or ended in an error
     progress     shows a bar, where tqdm is installed
     registries   with parts that are written in Python: the trials are then flown in this process, one by one
 
-    A trial that crashed or hung is a row with that outcome. Ctrl-C ends all at once; with db the same call goes on
-    from there. Raises BadInput for what the program refuses, ValueError for what cannot be written down,
+    A trial that crashed or hung is a row with that outcome. Ctrl-C ends all at once; with db the same call continues
+    from there. Raises BadInput for what the program refuses, ValueError for what cannot be written as text,
     FileNotFoundError where there is no program, ProgramFailed otherwise.
     """
     if record is not None and html is None:
@@ -317,10 +317,10 @@ def compare(
 ) -> CompareResult:
     """Compares solver backends on what flights ask for, or on a set of known problems (docs/compare.md).
 
-    source       a flight's record, or a file of a sweep or study, whose problems are taken (--from)
-    backends     which ones; None: all that can solve it
+    source       a flight's record, or a file of a sweep or study; its problems are taken (--from)
+    backends     which ones; None: all that can solve the problems
     set          {key: value} of every flight's scenario
-    gap          relative to the best known cost: solved
+    gap          relative to the best known cost; within it a problem counts as solved
     deadline_ms  solves are also stopped after this wall time
     pin          runs on this CPU only
     db           keeps every solve in a new SQLite file
@@ -424,10 +424,10 @@ def study(
     file            a study file, or the name of a shipped one
     quick           the short form
     cells, methods  only these
-    trials          of each method in each cell, the first so many seeds
-    record          flies again with a record and a page: "failures" or "all"
+    trials          number of trials of each method in each cell: the first seeds
+    record          flies these trials again with a record and a page: "failures" or "all"
 
-    A study that was interrupted goes on with the same call. Its report needs scipy and statsmodels; without them a
+    The same call continues a study that was interrupted. The report needs scipy and statsmodels; without them a
     warning says so, and `report` is None. Raises as `sweep` does.
     """
     import pandas as pd

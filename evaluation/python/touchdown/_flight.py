@@ -36,7 +36,7 @@ def _is_record(path: PathLike) -> bool:
 
 
 def _check_record_path(path: PathLike) -> None:
-    """Raises OSError where no record can be written, or would take the place of another file."""
+    """Raises OSError where no record can be written, or where it would replace another file."""
     check_folder(path)
     if os.path.exists(path) and os.path.getsize(path) > 0 and not _is_record(path):
         raise FileExistsError(f"{os.fspath(path)}: a file that is no record of a flight is in its place.")
@@ -102,8 +102,8 @@ def _column(values: List[Any]) -> np.ndarray:
 
 @dataclass(frozen=True)
 class TrialResult:
-    """What a flight came to: the document of `touchdown land --json` as attributes. `document` is all of it, `record` the
-    tables, if they were asked for. None stands for what does not apply."""
+    """The result of a flight: the document of `touchdown land --json` as attributes. `document` is all of it, `record`
+    the tables, if they were asked for. None stands for what does not apply."""
 
     landed: bool
     outcome: str
@@ -180,18 +180,17 @@ def run_trial(
     registries: Optional[_touchdown.Registries] = None,
     record: Union[bool, PathLike] = False,
 ) -> TrialResult:
-    """Flies one trial: a pure function of scenario and seed, but for its times.
+    """Flies one trial: a pure function of scenario and seed, except for its times.
 
     scenario    as in load_scenario
     seed        of what is drawn; None: the scenario's
     set         keys of the scenario to change: {"pad.speed": 1.2}
     planner, backend   short for the keys planner and solver.backend
     registries  Registries, where parts of Python take part
-    record      True: the result has a `record`; a path: the file is kept there, in place of a record
-                that is there
+    record      True: the result has a `record`; a path: the file is kept there and replaces an older record
 
-    Gives a TrialResult. Raises BadInput where the scenario cannot be flown, OSError where the record cannot be written;
-    what a part of Python raises in flight is raised here.
+    Returns a TrialResult. Raises BadInput where the scenario cannot be flown, and OSError where the record cannot be
+    written. What a part of Python raises in flight is raised here.
     """
     changes = dict(set or {})
     if planner is not None:

@@ -30,7 +30,7 @@ class PlanRequest:
     map       MapView: what is known of the obstacles, grown by planning.clearance
     limits    Limits of speed and acceleration
 
-    `pad` and `map` may be asked during the call alone.
+    `pad` and `map` may be used only during the call.
     """
 
     t_now: float
@@ -48,8 +48,8 @@ class _Part(Tunable):
 
     name        the word in a scenario; by default the class's in snake case
     summary     one line; by default the first of the docstring
-    parameters  {name: Parameter}: attributes of an instance, and keys NAME.PARAMETER of a scenario; a number of that
-                name in the body of a subclass is the default there
+    parameters  {name: Parameter}: attributes of an instance, and keys NAME.PARAMETER of a scenario. A number of that
+                name in the body of a subclass is its default
     """
 
     summary: str = ""
@@ -63,12 +63,13 @@ class _Part(Tunable):
 class Planner(_Part):
     """A planner of one's own, in the loop of our own and of EGO-Planner: `plan` gives a curve for each question.
 
-    lands   its plans may end in contact: it flies `descent: planned`; else it stays above the pad and sinks with it
+    lands   True: its plans may end in contact, and it flies `descent: planned`. False: it stays above the pad and sinks
+            with it
     avoids  it keeps clear of the map
     rate    at which it is asked [Hz]; 0: `planning.rate`
 
-    An instance also has `limits`, `floor_height` and `ceiling_height` of the scenario. What holds the curves, flies
-    the older one until t_start, brakes where there is no plan and climbs when the mission asks is the library's.
+    An instance also has `limits`, `floor_height` and `ceiling_height` of the scenario. The library holds the curves and
+    flies the older one until t_start. It brakes where there is no plan and climbs when the mission asks.
     """
 
     lands: bool = True
@@ -80,8 +81,8 @@ class Planner(_Part):
     _ranges: ClassVar[Dict[str, Range]] = {"rate": (0.0, 100.0)}
 
     def plan(self, request: PlanRequest) -> Union[_touchdown.UniformBspline, _Keep, str, None]:
-        """The curve to be flown from request.t_start on, a UniformBspline whose t0 is that; KEEP: the committed one
-        goes on; None, or a word of ReplanReason ("search_failed"): there is none, and the vehicle brakes."""
+        """The curve to be flown from request.t_start on: a UniformBspline whose t0 is request.t_start. KEEP: the
+        committed curve goes on. None, or a word of ReplanReason ("search_failed"): no curve, and the vehicle brakes."""
         raise NotImplementedError(f"planner {self.name} has no plan(self, request)")
 
 
@@ -102,7 +103,7 @@ class Controller(_Part):
         disturbance: _touchdown.Disturbance,
         tilt_most: float,
     ) -> _touchdown.ControlOutput:
-        """A ControlOutput for the VehicleState and the FlatState that is wanted."""
+        """A ControlOutput for the VehicleState and the wanted FlatState."""
         raise NotImplementedError(f"controller {self.name} has no update(...)")
 
 

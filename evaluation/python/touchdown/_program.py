@@ -59,8 +59,8 @@ def _is_script(path: Path) -> bool:
 def program_path() -> Path:
     """Where the program is.
 
-    What TOUCHDOWN_PROGRAM says, if it is set. Else the first of these that is there: inside of the package, in the
-    prefix or the build tree that the package is in, on PATH. Raises FileNotFoundError.
+    The value of TOUCHDOWN_PROGRAM, if it is set. Else the first that exists: in the package, in the prefix or the
+    build tree that the package is in, on PATH. Raises FileNotFoundError.
     """
     named = os.environ.get("TOUCHDOWN_PROGRAM")
     if named:
@@ -119,7 +119,7 @@ def run_words(
     """Runs the program; returns its exit status, stdout and the lines of stderr.
 
     `watch` is called now and then with what stderr holds by then. Whatever is raised meanwhile, Ctrl-C too, ends the
-    program. It runs in a group of its own, so that this alone decides.
+    program. It runs in a process group of its own, so that only this function ends it.
     """
     command = [str(program_path()), *(os.fspath(w) if isinstance(w, os.PathLike) else str(w) for w in words)]
     with subprocess.Popen(
@@ -155,7 +155,7 @@ def _why(status: int, out: str, lines: List[str]) -> str:
 
 
 def check(status: int, out: str, lines: List[str]) -> None:
-    """Raises what the exit status stands for; what else was said is a warning, to who called the caller."""
+    """Raises what the exit status stands for. Other messages become warnings at the caller's caller."""
     if status == 2:
         raise BadInput(_why(status, out, lines))
     if status != 0:
@@ -168,8 +168,8 @@ def check(status: int, out: str, lines: List[str]) -> None:
 def run_program(*arguments: Word, json: bool = False) -> Any:
     """Runs `touchdown` with these arguments, without a shell; returns what it printed.
 
-    With `json` --json is added, and the document is returned. Raises BadInput where the program refuses what it was
-    given, ProgramFailed where it ends with another status than 0: also after a flight that did not land.
+    With `json` --json is added, and the document is returned. Raises BadInput where the program refuses its input.
+    Raises ProgramFailed where it ends with another status than 0, also after a flight that did not land.
     """
     done = run_words([*arguments, "--json"] if json else arguments)
     check(*done)

@@ -37,7 +37,7 @@ class Bar:
         self._bar.update(done - self._bar.n)
 
     def show_trials(self, db: Path) -> None:
-        """What a file of trials says, which may not be there yet."""
+        """The progress in a file of trials, which may not exist yet."""
         if self._make is None or not db.is_file():
             return
         try:

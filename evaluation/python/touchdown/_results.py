@@ -31,7 +31,7 @@ def check_folder(path: PathLike) -> None:
 
 
 def open_result(path: PathLike) -> closing[sqlite3.Connection]:
-    """Not read only: what a killed writer left is taken in."""
+    """Opens for writing, too, to recover what a killed writer left."""
     return closing(sqlite3.connect(f"{Path(path).absolute().as_uri()}?mode=rw", uri=True))
 
 
@@ -48,7 +48,7 @@ def types_of(db: sqlite3.Connection, table: str) -> Dict[str, str]:
 
 
 def typed(texts: pd.Series) -> pd.Series:
-    """Values of a key that were written as text: numbers or truths where all of them are."""
+    """Values of a key that were written as text. They become numbers or booleans if all of them are."""
     import pandas as pd
 
     try:

@@ -18,7 +18,7 @@ _PLAIN_TEXT = re.compile(r"[\w./+-]+")
 
 
 def _plain(value: Any) -> Any:
-    """What JSON does not know: NumPy's numbers and arrays, paths, other mappings."""
+    """Types that JSON does not know: NumPy's numbers and arrays, paths, other mappings."""
     if hasattr(value, "tolist"):
         return value.tolist()
     if isinstance(value, os.PathLike):
@@ -65,7 +65,7 @@ def scenario_text(scenario: Union[Mapping[str, Any], Scenario]) -> str:
 
 
 def scenario_word(scenario: ScenarioLike, folder: Path) -> str:
-    """The scenario's name or path; what is in no file becomes one in `folder`."""
+    """The scenario's name or path. A scenario without a file becomes one in `folder`."""
     if not isinstance(scenario, (Mapping, Scenario)):
         return os.fspath(scenario)
     path = folder / "scenario.yaml"

@@ -30,14 +30,14 @@ def solve(
     start        where it begins, shape (num_variables,); None: the guess of a landing problem
     options      of the backend, {name: value}
     max_iterations, max_evaluations, wall_limit_s   end the solve
-    gap          ends it where the cost is above the optimum by this share at most; 0: it does not
-    confirm      looks at the point of a backend that says converged
+    gap          ends the solve where the cost is above the optimum by at most this share; 0: it does not
+    confirm      checks the point of a backend that reports convergence
     trace        keeps every iteration in the result; shares: the times of its parts
-    callback     called with y, cost, max_violation, evaluations; what is true ends the solve
-    multipliers  of the rows, from an earlier result: it begins there
+    callback     called with y, cost, max_violation, evaluations; a true return value ends the solve
+    multipliers  of the rows, from an earlier result: the solve begins there
 
-    Gives a SolverResult, however the solve ends. Raises ValueError where the backend is unknown or refuses the problem, and
-    what a term raises. A caller that solves many problems of one structure keeps a Solver.
+    Returns a SolverResult, however the solve ends. Raises ValueError where the backend is unknown or refuses the
+    problem, and what a term raises. A caller that solves many problems of one structure keeps a Solver.
     """
     if start is None:
         if not isinstance(problem, _touchdown.LandingProblem):

@@ -15,11 +15,11 @@ class Windows:
 
     q      control points, or blocks, of each window: shape (n, window, block_size)
     h      knot interval [s], the same for all
-    t      time of each window [s], shape (n,): of the knot at which position, velocity and acceleration are; t0 + k h of
-           a window that begins with block k
+    t      time of each window [s], shape (n,): the knot at which position, velocity and acceleration are. It is
+           t0 + k h for a window that begins with block k
     index  which window of the term each is, from 0: shape (n,)
 
-    The way from a pad that moves: `w.position - self.context.pad.positions(w.t)`, with uses_interval = True.
+    The offset from a moving pad: `w.position - self.context.pad.positions(w.t)`, with uses_interval = True.
     """
 
     __slots__ = ("q", "h", "t", "index")
@@ -56,22 +56,22 @@ class Term(Tunable):
 
     A term of one's own derives from this and writes `value`. Everything else has a default:
 
-    name, formula, unit, source   what people want to know; `name` is the word in scenarios
+    name, formula, unit, source   for people; `name` is the word in scenarios
     window, outputs               blocks that it sees at once, 1 to 6; numbers in its u
     uses_interval                 u depends on h or t
     linear                        u is affine in the blocks at a fixed h
-    scale                         change of the blocks over which u is smooth, > 0: steps of the differences are shares
+    scale                         change of the blocks over which u is smooth, > 0. Steps of the differences are shares
                                   of it. Make it smaller where u changes on a shorter length
-    convex                        the cost is convex in the blocks at a fixed h: `check_term` looks
-    weight                        of the loss; of a class that is registered the weight in a flight, 0: off
-    parameters                    {name: Parameter}: attributes of an instance, and keys terms.NAME.* of a scenario; a
-                                  number of that name in the body of a subclass is the default there
+    convex                        the cost is convex in the blocks at a fixed h: `check_term` checks it
+    weight                        of the loss; for a registered class the weight in a flight, 0: off
+    parameters                    {name: Parameter}: attributes of an instance, and keys terms.NAME.* of a scenario. A
+                                  number of that name in the body of a subclass is its default
     first_block, windows          the first block that it sees, and how many windows; None: as many as there are
     can_be_hard, is_limit, is_clearance   what a landing may do with it (docs/adding_a_term.md)
 
-    These attributes, the weight among them, and what loss() gives are read once: when the term is added. A later change
-    of them does nothing; of first_block and windows it counts from the next `update` on. All else that `value` looks at,
-    as parameters, is live: a change counts at once.
+    These attributes, also the weight, and the value of loss() are read once, when the term is added. A later change
+    has no effect, except for first_block and windows: it counts from the next `update` on. Everything else that `value`
+    reads, such as parameters, is live: a change counts at once.
     """
 
     formula: str = ""
@@ -109,16 +109,17 @@ class Term(Tunable):
         raise NotImplementedError(f"term {self.name} has no value(self, w)")
 
     def loss(self) -> Union[SquareLoss, HingeLoss, RangeLoss, LinearLoss]:
-        """What u costs: a SquareLoss, HingeLoss, RangeLoss or LinearLoss. As rows the interval on which it is 0."""
+        """The cost of u: a SquareLoss, HingeLoss, RangeLoss or LinearLoss. As rows the interval on which it is 0."""
         return SquareLoss(self.weight)
 
     def update(self, context: LandingContext) -> None:
-        """Told before every solve of a landing what it is about; keeps it as `context`."""
+        """Called before every solve of a landing with its context; keeps it as `context`."""
         self.context = context
 
 
 def worst_slope(cls: type) -> str:
-    """Where the jacobian of a term is farthest from differences, for a sentence; nothing where it cannot be asked alone."""
+    """The place where the jacobian of a term is farthest from differences, for a sentence. Empty if it cannot be
+    evaluated alone."""
     term = cls()
     n, w = 6, term.window
     q = np.random.default_rng(1).normal(scale=term.scale, size=(n, w, 3))

@@ -30,11 +30,11 @@ class Parameter:
 
 
 class Tunable:
-    """Looks at every class that derives from it when that is made: raises TypeError or ValueError.
+    """Checks every class that derives from it when the class is made: raises TypeError or ValueError.
 
     name        the word in a scenario; by default the class's in snake case
-    parameters  {name: Parameter}: attributes of an instance; a number of that name in the body of a subclass is the
-                default there
+    parameters  {name: Parameter}: attributes of an instance. A number of that name in the body of a subclass is its
+                default
     """
 
     name: str = ""
@@ -73,7 +73,7 @@ def _require(cls: type, name: str, value: Any, allowed: Range) -> None:
 
 
 def _check_kind(cls: "type[Tunable]", name: str, value: Any, default: Any) -> None:
-    """An attribute of the library's is of the kind that its default is of."""
+    """Checks that a library attribute has the type of its default."""
     for kinds, word in (((str,), "text"), ((bool, np.bool_), "truth"), ((dict,), "dictionary")):
         if isinstance(default, kinds) and not isinstance(value, kinds):
             raise TypeError(f"{cls.__name__}.{name} is {value!r}, it must be a {word}")

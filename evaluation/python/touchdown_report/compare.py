@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The pictures of a comparison of solver backends (docs/compare.md): the performance profile (Dolan
-and Moré, 2002), the distribution of the time to the gap, and the time per iteration over the number
-of control points.
+"""The pictures of a comparison of solver backends (docs/compare.md).
+
+They show the performance profile (Dolan and Moré, 2002), the distribution of the time to the gap, and the
+time per iteration over the number of control points.
 
     /usr/bin/python3 -m touchdown_report.compare COMPARISON.db OUT.png
 """
@@ -72,7 +73,7 @@ class Comparison:
 
 
 def middle(values):
-    """The median, infinite where it would have to be taken next to an infinite value."""
+    """The median; infinite if one of the two middle values is infinite."""
     low, high = (np.quantile(values, 0.5, method=m) for m in ("lower", "higher"))
     return float(low if low == high else (low + high) / 2)
 
@@ -112,7 +113,7 @@ def looks(backends):
 
 
 def label_of(backend, solved, run, count):
-    """The legend tells a problem that a backend was not run on from one that it failed on."""
+    """The legend distinguishes problems that a backend was not run on from problems that it failed on."""
     return f"{backend} ({solved} of {count}{'' if run == count else f'; {run} of {count} run'})"
 
 

@@ -31,8 +31,8 @@ class GrowthError(Exception):
 
 
 class Growth:
-    """One file: `manifest`, `usual` (what the steps were made with), and per axis the steps' times:
-    `times[name]` is {value: array of a step per row, the stages and the total in the columns}."""
+    """One file: `manifest`, `usual` (the settings of the steps), and per axis the steps' times.
+    `times[name]` is {value: array}, with a step per row, the stages and the total in the columns."""
 
     def __init__(self, path):
         self._path = path

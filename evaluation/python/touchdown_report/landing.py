@@ -94,7 +94,7 @@ def mode_path(axes, x, y, modes, **kwargs):
 
 
 def arrowhead(axes, x, y, colour):
-    """Which way the curve (x, y) goes, at half its length."""
+    """The direction of the curve (x, y) at half its length."""
     lengths = np.append(0.0, np.cumsum(np.hypot(np.diff(x), np.diff(y))))
     if lengths[-1] < LEAST_WAY:
         return
@@ -230,7 +230,7 @@ def draw_world(axes, record, contact, half, side):
 
 
 def frame_plan_view(plan, side, record, contact):
-    """Limits that hold both paths and what stands near them, at one scale in both views."""
+    """Limits that hold both paths and the obstacles near them, at one scale in both views."""
     everything = np.vstack([record.vehicle[: contact + 1, 1:3], record.pad[: contact + 1, 1:3]])
     lo, hi = everything.min(axis=0) - 2.0, everything.max(axis=0) + 2.0
     figure_size = plan.figure.get_size_inches()

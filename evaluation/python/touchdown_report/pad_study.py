@@ -25,8 +25,8 @@ class PadStudyError(Exception):
 
 
 class PadStudy:
-    """One file: `manifest`, `sigmas`, and `cells[scenario, course][sigma, source, model]`, the root mean
-    square of the prediction's error [m] with the ratio of the models and its interval."""
+    """One file: `manifest`, `sigmas`, and `cells[scenario, course][sigma, source, model]`. A cell has the root mean
+    square of the prediction's error [m], and the ratio of the models with its interval."""
 
     def __init__(self, path):
         self._path = path

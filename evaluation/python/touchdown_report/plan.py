@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The picture of one planning problem and its solution (`touchdown plan --picture`): both views with
-the map, what was known before the flight, guide paths, pairs, the old curve, the new one and those that lost; speed
-and acceleration against the limits; cost by iteration.
+"""The picture of one planning problem and its solution (`touchdown plan --picture`).
+
+Both views have the map, what was known before the flight, guide paths, pairs, the old curve, the new one and those
+that lost. Other panels show speed and acceleration against the limits, and cost by iteration.
 
     /usr/bin/python3 -m touchdown_report.plan PLAN.json OUT.png
 """
@@ -57,8 +58,8 @@ def best_round(plan):
 
 
 def lost_rounds(plan):
-    """(round, it took another way around the first obstacle) of each that gave no plan, in order. A round without pairs
-    takes none."""
+    """(round, whether it took another way around the first obstacle) of each round that gave no plan, in order. A round
+    without pairs takes none."""
     won = best_round(plan) if plan["result"]["status"] == "planned" else None
     guide = won["guide"] if won else 0
     return [
@@ -94,7 +95,7 @@ def draw_cells(axes, plan, down):
 
 
 def flown(plan):
-    """What is flown without a newer plan, as pieces (t, points, speed, acceleration): the curve, or what was
+    """What is flown without a newer plan, as pieces (t, points, speed, acceleration). It is the curve, or the curve
     committed before until its stored stop begins, and the stop."""
     result = plan["result"]
     stop = result.get("stop")

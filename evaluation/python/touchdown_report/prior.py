@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a flight's map.prior holds occupied, and where the flight found it wrong: cubes by their state, as in the
-record's table `prior`. Each state has a hatch of its own."""
+"""The occupied cells of a flight's map.prior, and where the flight found it wrong. They are cubes by their state, as in
+the record's table `prior`. Each state has a hatch of its own."""
 import numpy as np
 from matplotlib.collections import LineCollection, PatchCollection
 from matplotlib.patches import Patch, Rectangle

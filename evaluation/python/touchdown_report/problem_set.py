@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The picture of a comparison on a set of known problems (docs/compare.md): the performance profile
-(Dolan and Moré, 2002) and the distribution of the time of the solves that were right.
+"""The picture of a comparison on a set of known problems (docs/compare.md).
+
+It shows the performance profile (Dolan and Moré, 2002) and the distribution of the time of the right solves.
 
     /usr/bin/python3 -m touchdown_report.problem_set SET.db OUT.png
 """
@@ -23,8 +24,8 @@ class ProblemSetError(Exception):
 
 
 class ProblemSet:
-    """One file: `manifest` (dict), `backends` in order, `count` of solves that each could have made, and
-    `times`, {backend: {(problem, start): ms}}, infinite where the solve was not right."""
+    """One file: `manifest` (dict), `backends` in order, `count` of solves that each could have made, and `times`.
+    `times` is {backend: {(problem, start): ms}}, infinite where the solve was not right."""
 
     def __init__(self, path):
         database.read(

@@ -74,7 +74,7 @@ class Record:
 
     @staticmethod
     def _prior(db):
-        """Cubes of map.prior by their state, what lies below first: lowest cell and side, shape (n, 4)."""
+        """Cubes of map.prior by their state, lower ones first: lowest cell and side, shape (n, 4)."""
         rows = dict(db.execute("SELECT state, cubes FROM prior"))
         return {
             state: np.frombuffer(rows[state], "<i4").reshape(-1, 4)

@@ -15,7 +15,7 @@ STYLE = {
 
 
 def sign(figure, title, provenance):
-    """What a picture shows, above it, and what it was made with, below."""
+    """Writes the title above a picture, and what it was made with below."""
     figure.suptitle(title, x=0.01, ha="left", fontsize=11, fontweight="bold")
     figure.supxlabel(provenance, x=0.01, ha="left", fontsize=7.5, color="#555555")
 

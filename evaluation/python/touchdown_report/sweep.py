@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The outcome of a sweep over the keys that it varied: success and median time to land over lists of
-values (two keys: heat maps), and every trial's time to land over a key drawn from a range.
+"""The outcome of a sweep over the keys that it varied.
+
+Over lists of values: success and median time to land (two keys: heat maps). Over a key drawn from a range: every
+trial's time to land.
 
     /usr/bin/python3 -m touchdown_report.sweep TRIALS.db OUT.png
 """
@@ -28,8 +30,8 @@ class SweepError(Exception):
 
 
 class Cell:
-    """The trials with one combination of listed values: `trials`, `succeeded`, the 95 % interval of
-    the rate `low`, `high`, and the median time to land `time` [s] of those that landed, or None."""
+    """The trials with one combination of listed values: `trials`, `succeeded`, and the 95 % interval of
+    the rate `low`, `high`. `time` is the median time to land [s] of those that landed, or None."""
 
     def __init__(self, trials, succeeded, low, high, time):
         self.trials, self.succeeded = trials, succeeded
@@ -44,8 +46,8 @@ class Cell:
 
 
 class Sweep:
-    """One file: `manifest`, `lists` {key: values in order}, `ranges` (keys), `cells` {tuple of one
-    value of each list: Cell} as far as trials of them were flown, and for each key `trials(key)`."""
+    """One file: `manifest`, `lists` {key: values in order}, `ranges` (keys), and for each key `trials(key)`.
+    `cells` is {tuple of one value of each list: Cell} as far as trials of them were flown."""
 
     def __init__(self, path):
         self._path = path

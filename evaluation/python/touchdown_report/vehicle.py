@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The picture of a vehicle (`touchdown check-vehicle --picture`): from above and from the right, with its hull,
-feet, rotors and their senses, the axes of its frame B and those of its inertia.
+"""The picture of a vehicle (`touchdown check-vehicle --picture`), from above and from the right.
+
+It has the hull, feet, rotors and their senses, the axes of the vehicle's frame B and those of its inertia.
 
     /usr/bin/python3 -m touchdown_report.vehicle VEHICLE.json OUT.png
 """
@@ -65,7 +66,7 @@ def hull_of(points):
 
 
 def draw_rotor(axes, index, rotor, radius, across, up, size):
-    """A disc with the sense in which it turns, opposite to its reaction torque; a line from the side."""
+    """A disc with its sense of rotation, opposite to its reaction torque. From the side it is a line."""
     hub = rotor["p_BR"]
     x, y = hub[across], hub[up]
     turns_left = rotor["moment_B"][2] < 0

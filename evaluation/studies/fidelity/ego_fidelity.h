@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Is the EGO-Planner baseline what it says? Its first plan calls beside the measured quantiles of the
-// released program's.
+// Checks the EGO-Planner baseline: its first plan calls beside the measured quantiles of the released program's.
 #pragma once
 
 #include <string>
@@ -31,8 +30,7 @@ std::vector<EgoFidelityRow> CompareWithUpstream(const SceneKind& kind,
                                                 const std::vector<EgoSceneResult>& results,
                                                 const std::string& path);
 
-/// Where the measured quantiles were installed, or stand in the source tree. @throws BadInput if they
-/// do neither.
+/// Where the measured quantiles are: installed, or in the source tree. @throws BadInput if they are in neither.
 std::string EgoQuantilesPath();
 
 /// Every judged row meets its rule.

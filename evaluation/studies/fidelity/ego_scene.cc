@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The forests are those of forest_scene.h, as for replan_scene.h. Map and ends are the published planner's own where
 // they differ from this project's:
-// - cubes instead of balls around obstacle cells;
-// - everything farther than 12 m from the start is unknown;
-// - the end is on its straight global reference, and is not moved out of an obstacle.
+// - Cubes, not balls, are inflated around obstacle cells.
+// - Everything farther than 12 m from the start is unknown.
+// - The end is on its straight global reference, and is not moved out of an obstacle.
 // No ring stands within 2 m of the start, as no pillar does. This is inferred: else one start in fifty would lie in a
 // ring's reach and fail at once, which none of the measured ones did.
 #include "evaluation/studies/fidelity/ego_scene.h"

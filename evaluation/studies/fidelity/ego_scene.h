@@ -12,7 +12,7 @@
 
 namespace touchdown::evaluation {
 
-/// What one first plan call came to. The figures of the curve are NaN without one.
+/// The result of one first plan call. The figures of the curve are NaN without one.
 struct EgoSceneResult {
   planning::EgoStatus status = planning::EgoStatus::kInvalidInput;
   int control_points = 0;
@@ -28,9 +28,9 @@ struct EgoSceneResult {
   double max_acceleration = 0.0;  ///< norm [m/s^2]
 };
 
-/// Makes the first plan call in each of `scenes` forest scenes of the kind: obstacles within 12 m of
-/// the start are known, the map is the published one. `report` is told of progress. The same seed
-/// gives the same results. @throws std::invalid_argument if scenes < 1.
+/// Makes the first plan call in each of `scenes` forest scenes of the kind. Obstacles within 12 m of the start are
+/// known; the map is the published one. `report` gets the progress. The same seed gives the same results. @throws
+/// std::invalid_argument if scenes < 1.
 std::vector<EgoSceneResult> RunEgoScenes(const SceneKind& kind, int scenes, std::uint64_t seed,
                                          const std::function<void(int done, int all)>& report);
 

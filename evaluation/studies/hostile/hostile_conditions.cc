@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Everything is drawn for every flight, whether or not it is used, so that what is fixed on the command
-// line or put beyond never shifts another draw.
+// Everything is drawn for every flight, whether or not it is used. So a value that is fixed on the command line, or
+// goes beyond the assumptions, never shifts another draw.
 #include "evaluation/studies/hostile/hostile_conditions.h"
 
 #include <algorithm>

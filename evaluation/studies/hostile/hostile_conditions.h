@@ -10,8 +10,8 @@
 
 namespace touchdown::evaluation {
 
-/// What the flights within the assumptions are drawn from, and how far the others go beyond: one line for
-/// each condition, in words.
+/// The ranges from which flights within the assumptions are drawn, and how far the others go beyond. One line for each
+/// condition, in words.
 struct HostileCondition {
   const char* name;    ///< as the report calls it where it is broken
   const char* keys;    ///< the scenario keys that it sets, commas between
@@ -23,13 +23,12 @@ const std::vector<HostileCondition>& HostileConditions();
 /// Every condition, evenly from the assumed range.
 void DrawConditions(sim::RandomStream& draw, Scenario* scenario);
 
-/// One to three conditions that go beyond, by name, none of those whose keys begin one of `fixed`
-/// ("depth.drop=0.9"). Thin poles are of the family `poles` alone.
+/// One to three conditions that go beyond, by name. None of them has a key that begins one of
+/// `fixed` ("depth.drop=0.9"). Thin poles occur only in the family `poles`.
 std::vector<std::string> ChooseBeyond(sim::RandomStream& draw, const std::string& family,
                                       const std::vector<std::string>& fixed);
 
-/// Puts these out of the assumed range. What concerns the world is the generator's: see AddNearPost and
-/// WorldRequest.
+/// Puts these out of the assumed range. Conditions of the world are the generator's: see AddNearPost and WorldRequest.
 void DrawBeyond(const std::vector<std::string>& beyond, sim::RandomStream& draw,
                 Scenario* scenario);
 

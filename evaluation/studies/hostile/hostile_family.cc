@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The list of families. What stands here in words is what the generators draw: docs/reference/hostile_worlds.md is made
-// of the same table, and a test compares.
+// The list of families. The words here describe what the generators draw. docs/reference/hostile_worlds.md is made from
+// the same table, and a test compares.
 #include "evaluation/studies/hostile/hostile_family.h"
 
 #include <fmt/format.h>

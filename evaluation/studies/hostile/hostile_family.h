@@ -9,12 +9,12 @@
 
 namespace touchdown::evaluation {
 
-/// Diameters of the poles [m]: what the planner promises to see, and what it does not.
+/// Diameters of the poles [m]: those that the planner promises to see, and thinner ones.
 inline constexpr double kThinnestPole = 0.03;
 inline constexpr double kPromisedPole = 0.10;
 inline constexpr double kThickestPole = 0.20;
 
-/// What a generator is told beside the scenario's conditions, which are drawn before.
+/// The input of a generator beside the scenario's conditions, which are drawn before.
 struct WorldRequest {
   bool thin_poles = false;  ///< poles thinner than kPromisedPole
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Families in which what stands does not reach from the ground to the ceiling.
+// Families in which obstacles do not reach from the ground to the ceiling.
 #include <cmath>
 
 #include "evaluation/studies/hostile/hostile_family.h"

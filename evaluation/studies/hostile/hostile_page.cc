@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The report as one page that needs nothing else: tables, and the worlds drawn as SVG from above.
+// The report as one page that needs no other file: tables, and the worlds from above as SVG.
 #include <algorithm>
 #include <cmath>
 #include <map>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Families in which the way leads through gaps between walls that are not flown over.
+// Families in which the way leads through gaps between walls that cannot be flown over.
 #include <algorithm>
 
 #include "evaluation/studies/hostile/hostile_family.h"

@@ -15,8 +15,8 @@
 
 namespace touchdown::evaluation {
 
-/// What `touchdown study hostile` prints: two tables by family, within and beyond the assumptions, then
-/// every flight that did not land, with the command that flies it again.
+/// What `touchdown study hostile` prints. Two tables by family, within and beyond the assumptions, come first. Then
+/// follows every flight that did not land, with the command that flies it again.
 std::string HostileText(const HostileOptions& options, const std::vector<SweepRow>& rows);
 
 /// The same as JSON. Nothing in it depends on who flew the flights.
@@ -40,7 +40,7 @@ HostileTimes ReadHostileTimes(const HostileOptions& options, const std::string& 
 /// Ratios of times to land, flight by flight, to those of the same flights in another campaign, by family.
 std::string HostilePairsText(const std::vector<SweepRow>& rows, const HostileTimes& others);
 
-/// What became of the safety rule: names and values, in the order in which reports print them.
+/// Figures of the safety rule: names and values, in the order in which reports print them.
 using SafetyLines = std::vector<std::pair<std::string, std::string>>;
 SafetyLines SafetyFacts(const HostileTally& tally);
 

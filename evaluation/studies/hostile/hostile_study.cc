@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A flight is drawn in this order: family, conditions, what goes beyond, then --set, then the world, which
-// may ask for the conditions, then --set again, for keys of the world. A world in which the start is not
-// free or the pad's lane is blocked is thrown away, and the next one is drawn from a stream of its own.
+// A flight is drawn in this order: family, conditions, what goes beyond, --set, world, and --set again for keys of the
+// world. The world may depend on the conditions. A world in which the start is not free or the pad's lane is blocked is
+// discarded. The next one is drawn from its own stream.
 #include "evaluation/studies/hostile/hostile_study.h"
 
 #include <algorithm>
@@ -38,7 +38,7 @@ bool Sets(const HostileOptions& options, const std::string& key) {
                      [&](const std::string& text) { return text.rfind(key + "=", 0) == 0; });
 }
 
-// Single keys alone: what is fixed has to be known by its name. Seeds and obstacles are the study's.
+// Only single keys, because a fixed condition is identified by its key. Seeds and obstacles are the study's.
 void ApplySet(const HostileOptions& options, const Registries& registries, Scenario* scenario) {
   for (const std::string& text : options.set) {
     ApplyOverride(text, registries, scenario);  // says what is wrong with the name or the value
@@ -53,7 +53,7 @@ void ApplySet(const HostileOptions& options, const Registries& registries, Scena
   }
 }
 
-// What was fixed may contradict what was drawn.
+// A fixed value may contradict a drawn one.
 void SuitConditions(const HostileOptions& options, Scenario* s) {
   if (!Sets(options, "planning.latency")) {
     s->planning.latency.ms = std::min(s->planning.latency.ms, std::floor(1e3 * LongestLatency(*s)));

@@ -18,7 +18,7 @@ struct HostileOptions {
   std::vector<std::string> set;       ///< "depth.drop=0.9": fixed in every flight
 };
 
-/// A flight of the study: what was drawn, and whether a way exists.
+/// A flight of the study: its draws, and whether a way exists.
 struct HostileFlight {
   int index = 0;
   std::string family;
@@ -27,7 +27,7 @@ struct HostileFlight {
   SweepTrial trial;  ///< its place in a campaign is the index
 };
 
-/// Flight `index`: a pure function of index and options but for `flights`.
+/// Flight `index`: a pure function of index and options, except `flights`.
 /// @throws BadInput for options that are wrong, or for a --set that no world fits
 HostileFlight DrawHostileFlight(const HostileOptions& options, int index,
                                 const Registries& registries);

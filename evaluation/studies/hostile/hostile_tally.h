@@ -20,10 +20,10 @@ bool WrongContact(const TrialResult& result);
 bool CameToNothing(const TrialResult& result);
 /// None of these, and no landing: the program or the physics failed, the rotors were stopped in the air.
 bool EndedOtherwise(const TrialResult& result);
-/// The kind of a wrong contact in one word: the outcome, of a collision what was touched.
+/// The kind of a wrong contact in one word: the outcome, or for a collision the touched thing.
 std::string ContactKind(const TrialResult& result);
 
-/// What a number of flights came to.
+/// The results of a number of flights.
 struct HostileTally {
   int flights = 0;
   int ways = 0;                         ///< flights in which a way exists

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The world is cut into cells of 0.2 m around start, lane and obstacles. A cell may be entered where the
-// obstacles are as far as the clearance; the step into it is looked at half way. The bound on the rest of
-// a way is the distance to the box around the lane, so that what is settled is settled by its shortest way.
+// The world is cut into cells of 0.2 m around start, lane and obstacles. A cell may be entered where the obstacles are
+// as far as the clearance; the step into it is checked half way. The bound on the rest of a way is the distance to the
+// box around the lane. So a settled cell is settled by its shortest way.
 #include "evaluation/studies/hostile/hostile_way.h"
 
 #include <algorithm>
@@ -167,7 +167,8 @@ class WayFinder {
     if (length >= length_[Index(cell)]) return;
     length_[Index(cell)] = length;
     const Eigen::Vector2d p = Centre(Place(cell)).head<2>();
-    // The last cell's centre may be outside of the box: half a diagonal less keeps the bound one.
+    // The last cell's centre may be outside of the box. Subtracting half a diagonal keeps the bound
+    // valid.
     const double rest = std::max(0.0, lane_box_.exteriorDistance(p) - kCell);
     queue_.push({length + static_cast<float>(rest), cell});
   }

@@ -50,7 +50,7 @@ void CircleLane(double x, double radius, sim::RandomStream& draw, Scenario* s) {
   s->pad.phase = DrawIn(draw, {0.0, 2.0 * kPi * radius});
 }
 
-// What a world is moved by: mirrored at y = 0, turned to the left by quarters, shifted.
+// The motion of a world: mirrored at y = 0, turned to the left by quarters, shifted.
 struct Move {
   bool mirrored = false;
   int quarters = 0;

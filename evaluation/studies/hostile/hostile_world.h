@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the generators of hostile worlds build with. A generator works in a frame in which the vehicle
-// starts near the origin and the pad drives beyond, towards +x; the finished world is then turned.
+// Functions for the generators of hostile worlds. A generator works in a frame in which the vehicle starts near the
+// origin and the pad drives beyond, towards +x. The finished world is then turned.
 #pragma once
 
 #include "sim/base/random_stream.h"
@@ -8,11 +8,11 @@
 
 namespace touchdown::evaluation {
 
-/// Obstacles that are not to be flown over, and the ceiling that makes it so [m].
+/// Obstacles that cannot be flown over, and the ceiling that prevents it [m].
 inline constexpr double kTallWall = 5.0;
 inline constexpr double kLowCeiling = 4.0;
 
-/// What stands may come no nearer to the pad's path than this, from its centre [m].
+/// Least distance of obstacles from the pad's path, from its centre [m].
 inline constexpr double kLaneRoom = 2.2;
 
 /// Within the assumptions no obstacle is nearer to the start, from the body's centre [m].
@@ -40,10 +40,10 @@ void AddPost(double x, double y, double diameter, double height, Scenario* scena
 /// The vehicle hovers there, heading to +x turned left by `yaw_deg`.
 void StartAt(double x, double y, double z, double yaw_deg, Scenario* scenario);
 
-/// A closed way of the pad beyond `x`: a figure of eight, a circle, or to and fro across. Its speed is one
-/// that limits.acceleration can follow.
+/// A closed way of the pad beyond `x`: a figure of eight, a circle, or to and fro across. A vehicle can follow its
+/// speed within limits.acceleration.
 void LaneBeyond(double x, sim::RandomStream& draw, Scenario* scenario);
-/// To and fro along y at `x` with the middle at y = 0, `length` long but for its smooth turns, which take
+/// To and fro along y at `x` with the middle at y = 0. The lane is `length` long, less its smooth turns. These take
 /// about a quarter of it.
 void StraightLane(double x, double length, sim::RandomStream& draw, Scenario* scenario);
 

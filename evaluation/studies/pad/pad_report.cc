@@ -63,7 +63,7 @@ OutcomeCount CountOutcomes(const PadStudy& study, int scenario, int sigma) {
   return count;
 }
 
-// What stands above the cells of a scenario and a sigma.
+// The line above the cells of a scenario and a sigma.
 std::string Heading(const PadStudyOptions& options, const PadStudy& study, int scenario,
                     int sigma) {
   const OutcomeCount count = CountOutcomes(study, scenario, sigma);

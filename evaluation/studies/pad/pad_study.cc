@@ -4,7 +4,8 @@
 // 2. Give a filter of each model the same measurements, at the moments at which they came.
 // 3. Ask each 50 times a second for the pad's position and velocity, and for its future as the planner asks
 //    (estimation::Predict).
-// A sample's course goes by the true turn rate up to its horizon: no model can know of a turn that has not begun.
+// A sample's course follows from the true turn rate up to its horizon, because no model can predict a turn that has not
+// begun.
 #include "evaluation/studies/pad/pad_study.h"
 
 #include <algorithm>
@@ -51,7 +52,8 @@ PadCourse CourseOf(const PadLog& log, std::size_t from, std::size_t to) {
                                                                : PadCourse::kTurn;
 }
 
-// The truth as the belief's motion has it; of the two descriptions of a motion the nearer one.
+// The truth in the form of the estimate's motion. A motion has two descriptions; this is the nearer
+// one.
 estimation::PadVector TruthFor(const PadBelief& belief, const PadState& pad) {
   estimation::PadVector truth = estimation::PadVector::Zero();
   truth.head<2>() = pad.p_WP.head<2>();
@@ -91,8 +93,8 @@ void Give(const estimation::PadArrival& arrival, estimation::PadFilter* filter) 
   }
 }
 
-// The flights of a scenario and a sigma. The sigma goes before the user's own changes, which shows
-// whether they touch it; and so does the style whose flights are longer, unless they want the other.
+// The flights of a scenario and a sigma. The sigma precedes the user's overrides, so a changed sigma is noticed. The
+// vertical style, whose flights are longer, precedes them too, so the user can choose the other.
 // @throws BadInput
 std::vector<SweepTrial> PlanCell(const PadStudyOptions& options, std::size_t scenario,
                                  std::size_t sigma, const Registries& registries) {
@@ -146,8 +148,8 @@ Flown Unpacked(const std::string& bytes) {
   return flown;
 }
 
-// `fly` for every number, each in a process of its own, and `take` here for what it leaves. @throws what `fly`
-// throws, and std::runtime_error for one that dies or hangs: a mean over flights needs them all.
+// Calls `fly` for every number in a process of its own, and `take` here for its result. @throws what `fly` throws, and
+// std::runtime_error for one that dies or hangs: a mean over flights needs them all.
 void FlyAll(int count, int jobs, const std::function<Flown(int)>& fly,
             const std::function<void(int, Flown)>& take,
             const std::function<void(int done, int all)>& progress) {

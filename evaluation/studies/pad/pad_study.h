@@ -65,17 +65,17 @@ struct PadStudy {
   std::vector<PadStudyRow> rows;
 };
 
-/// Runs a filter of each model on what came to the flight's, and compares it with the truth at every
-/// sample from kPadSettled to contact whose horizon the log reaches. A sample is by tags if it is for
-/// both, so that both models have the same samples. One row for each model, course and information that
-/// occurred; the flight is left open. @param options of both; their model is not read.
+/// Runs a filter of each model on the measurements of the flight's filter. Compares it with the truth at every sample
+/// from kPadSettled to contact whose horizon the log reaches. A sample is by tags if it is for both, so that both
+/// models have the same samples. One row for each model, course and information that occurred; `flight` is not set.
+/// @param options of both; their model is not read.
 std::vector<PadStudyRow> ReplayPadLog(const PadLog& log,
                                       const estimation::PadFilterOptions& options);
 
-/// Flies the trials, each once, and runs both models on what its filter was given. Rows do not
-/// depend on `jobs`. @throws BadInput for a scenario that cannot be had, for a gps.sigma among the
-/// overrides that is not that of every cell, and where the vehicle's own state is estimated: its pad
-/// filter lives in that estimate's frame, the truth in W. Also what RunTrial throws.
+/// Flies the trials, each once, and runs both models on the input of its filter. Rows do not depend on `jobs`.
+/// @throws BadInput for an invalid scenario, and for a gps.sigma among the overrides that differs from a cell's. Also
+/// where the vehicle's own state is estimated: its pad filter lives in that estimate's frame, the truth in W. Also what
+/// RunTrial throws.
 PadStudy RunPadStudy(const PadStudyOptions& options, const Registries& registries,
                      const std::function<void(int done, int all)>& progress);
 

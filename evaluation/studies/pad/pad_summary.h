@@ -30,7 +30,7 @@ struct PadStudyCell {
   Interval interval;   ///< its 95 % bootstrap interval, over flights
 };
 
-/// What the cell's members ask of the rows; without samples nothing.
+/// The cell for these members of `asked`; nothing without samples.
 std::optional<PadStudyCell> Summarise(const PadStudy& study, PadStudyCell asked);
 
 /// Every course, with tags, by GPS alone, and both, and all courses, of every scenario and sigma.
@@ -44,10 +44,10 @@ struct PadDemand {
   bool met() const { return value && *value <= limit; }
 };
 
-/// What every scenario and sigma of the options has to show, with samples or not. Of the prediction's
-/// error over the paper model's: where the pad's motion is the circle 1/3 at a GPS up to kPadGoodGps and
-/// with tags, 0.7 at a coarser one; of any other motion 1.5 on its straights. Of the state's NEES over
-/// its degrees of freedom: 1.5.
+/// The demands for every scenario and sigma of the options, with samples or not. They limit the ratio of the
+/// prediction's errors, turn_rate over paper. If the pad's motion is the circle, the limit is 1/3 at a GPS up to
+/// kPadGoodGps and with tags, and 0.7 at a coarser one. For any other motion it is 1.5 on its straights. The limit of
+/// the state's NEES over its degrees of freedom is 1.5.
 std::vector<PadDemand> PadDemands(const PadStudyOptions& options, const PadStudy& study);
 inline constexpr double kPadGoodGps = 0.05;  ///< [m]
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Flights of a point through a forest, with perfect tracking: what a planner does when it is asked again and
-// again while obstacles come into sight, without sensors, controller or physics.
+// Flights of a point through a forest, with perfect tracking. They show a planner that is asked again and again while
+// obstacles come into sight, without sensors, controller or physics.
 #pragma once
 
 #include <map>
@@ -48,10 +48,10 @@ struct ForestFlight {
   std::vector<double> step_ms;        ///< thread CPU time of each step that called a solver
 };
 
-/// Flies 36 m along x through forest number `index` of the kind (40 x 40 x 3 m), from rest to rest at 1 m
-/// height. Every obstacle within 5 m of the point is known, at 10 Hz; the landing planner is asked at 10 Hz and
-/// answers after 20 ms, the baseline's state machine runs at its own 100 Hz and gets its goal once. The
-/// same options and index give the same flight but for times.
+/// Flies 36 m along x, from rest to rest at 1 m height, through forest number `index` of the kind (40 x 40 x 3 m).
+/// Obstacles within 5 m of the point become known at 10 Hz. The landing planner is asked at 10 Hz and answers after 20
+/// ms. The baseline's state machine runs at its own 100 Hz and gets its goal once. The same options and index give the
+/// same flight except for times.
 ForestFlight FlyThroughForest(const ForestFlightOptions& options,
                               const solvers::BackendRegistry& backends, int index);
 

@@ -38,7 +38,7 @@ struct SceneOptions {
   std::uint64_t seed = 1;
 };
 
-/// A vehicle in flight to a goal; what it knows of the forest is the caller's choice.
+/// A vehicle in flight to a goal. The caller decides which part of the forest it knows.
 struct ForestScene {
   planning::SplineState start;                       ///< in W
   Eigen::Vector3d ahead = Eigen::Vector3d::UnitX();  ///< unit vector to the goal, level
@@ -51,7 +51,7 @@ struct ForestScene {
 inline constexpr double kForestFloor = 0.2;
 inline constexpr double kForestCeiling = 2.5;
 
-/// What stands for a point where distances to obstacles are measured, and its radius [m].
+/// A ball that replaces a point for distances to obstacles; its radius [m].
 inline constexpr double kPointRadius = 1e-4;
 estimation::VehicleModel PointVehicle();
 
@@ -61,8 +61,8 @@ inline constexpr int kForestSceneDraws = 100;
 /// The random stream of draw number `draw` of scene `index`.
 sim::RandomStream SceneStream(const SceneOptions& options, int index, int draw);
 
-/// Draws a scene: start at 1 m height with up to 0.8 of the speed limit within 0.4 rad of the way to a
-/// goal 11 / 7.5 horizons ahead, no pillar within 2 m of either. The stream can be drawn from further.
+/// Draws a scene. The start is at 1 m height with up to 0.8 of the speed limit, within 0.4 rad of the direction to the
+/// goal. The goal is 11 / 7.5 horizons ahead. No pillar is within 2 m of either. The stream can be drawn from further.
 /// Throws std::invalid_argument for an option out of range.
 ForestScene DrawForestScene(const SceneOptions& options, sim::RandomStream* stream);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A line of the file: set, kind, seed, and a letter for each scene from 0 on: p, w, m a plan was found along a path, a
-// wide path or a motion; e the end is blocked; s the start leaves no time to stop; x none was found.
+// A line of the file: set, kind, seed, and a letter for each scene from 0 on.
+// - p, w, m: a plan was found along a path, a wide path or a motion.
+// - e: the end is blocked. s: the start leaves no time to stop. x: no plan was found.
 #include "evaluation/studies/replan/oracle_verdicts.h"
 
 #include <charconv>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A way gives a curve in time; its control points are bound to the free space around it; solve, bind anew
-// where it is blocked, press harder, until the curve has a certificate. Ways: paths of A*, short and wide, with the ways of
-// earlier ones closed; and those of a search in position and speed, which fit a fast start.
+// A way gives a curve in time; its control points are bound to the free space around it. Then: solve, bind anew where
+// it is blocked, press harder, until the curve has a certificate. Some ways are paths of A*, short and wide, with
+// earlier ways closed. Others are from a search in position and speed, which fit a fast start.
 #include "evaluation/studies/replan/plan_oracle.h"
 
 #include <algorithm>
@@ -132,7 +132,7 @@ OracleAnswer PlanOracle::Impl::Ask(const ReplanScene& scene) {
 /// The ways of earlier paths are closed one after the other, each at the first obstacle in the straight way, then at the last.
 bool PlanOracle::Impl::TryPaths(const char* name, double tight_cost) {
   planning::GridSearch search(tight_cost > 1.0 ? 2.0 : 1.0, 1.0, tight_cost);
-  // Ends that move have paths of their own; a way hardly changes from one arrival to the next.
+  // Moving ends have paths of their own. A way hardly changes from one arrival to the next.
   const bool stands = scene_->end->At(0.0).v_WP.norm() < 1e-9;
   for (const bool at_last : {false, true}) {
     std::vector<planning::GuidePath> paths;
@@ -267,7 +267,7 @@ bool PlanOracle::Impl::Polish(const TimedWay& way, int segments, double T) {
   return false;
 }
 
-/// First the whole way, then what is blocked.
+/// First the whole way, then the blocked parts.
 bool PlanOracle::Impl::Bind(const UniformBspline& curve, bool first,
                             const planning::GuidePath& guide) {
   binder_.Start(curve);

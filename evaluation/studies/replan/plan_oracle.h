@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Is there a plan at all? What the success of a replanning step is counted against.
+// Whether there is a plan at all. The success of a replanning step is counted against it.
 #pragma once
 
 #include <memory>
@@ -11,7 +11,7 @@
 
 namespace touchdown::evaluation {
 
-/// What the oracle says of a scene. That it found no plan proves nothing.
+/// The oracle's verdict on a scene. That it found no plan proves nothing.
 struct OracleVerdict {
   bool found = false;        ///< there is a plan
   std::string found_by;      ///< "path", "wide path", "motion"; empty: no plan
@@ -20,15 +20,15 @@ struct OracleVerdict {
   int solves = 0;
 };
 
-/// With the plan that it found, which has the certificate of plans that are flown.
+/// With the plan that it found, which has the same certificate as plans that are flown.
 struct OracleAnswer : OracleVerdict {
   std::optional<planning::UniformBspline> plan;
   int tries = 0;  ///< ways times arrivals times segments that were tried
 };
 
-/// Tries many ways around obstacles, arrival times and segments, each with many rounds of binding; takes
-/// milliseconds where a plan is near and seconds where there is none. It shares with the replanning step what
-/// a plan is (the landing problem, corridors, the certificate and its pair), not how one is looked for.
+/// Tries many ways around obstacles, arrival times and segments, each with many rounds of binding. Takes milliseconds
+/// where a plan is near and seconds where there is none. It shares with the replanning step the definition of a plan
+/// (the landing problem, corridors, the certificate and its pair), but not the search.
 class PlanOracle {
  public:
   /// @param options as a step has them; backend and formulation are the oracle's own: `banded`, soft limits,

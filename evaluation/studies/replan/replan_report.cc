@@ -100,8 +100,8 @@ std::string Of(int good, int all) {
                      100.0 * share.lo, 100.0 * share.hi);
 }
 
-// A search finds a way into many scenes whose end is blocked or which no vehicle can fly: where the oracle was asked,
-// its word comes first.
+// A search finds a way into many scenes whose end is blocked or which no vehicle can fly. So where the oracle was
+// asked, its verdict comes first.
 std::string FoundText(const ReplanStudyPart& part, SceneStep step, const ReplanSummary& s) {
   const std::string search =
       fmt::format("{} scenes that a search finds a way through, blocked ends among them",

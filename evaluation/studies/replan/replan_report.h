@@ -14,7 +14,7 @@ namespace touchdown::evaluation {
 /// Steps of one kind of scenes under one set of options.
 struct ReplanStudyPart {
   std::string part;    ///< safety, growth
-  std::string varied;  ///< growth: what is not as usual here
+  std::string varied;  ///< growth: the setting that differs from the usual one
   ReplanStudyOptions options;
   std::vector<ReplanRow> rows;
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The published scenes' end is a point and a velocity near the speed limit, whenever it is reached: the
-// set point_ahead. In the others the point is where a pad will be: it passes the point when the
-// replanner's own guess of the duration says, so that a plan that is on time ends there.
+// The published scenes' end is a point and a velocity near the speed limit, whenever it is reached: the set
+// point_ahead. In the others the point belongs to a future pad. The pad passes it when the replanner's own guess of the
+// duration says, so that a plan that is on time ends there.
 #include "evaluation/studies/replan/replan_scene.h"
 
 #include <algorithm>
@@ -55,8 +55,7 @@ planning::OccupancyMapOptions MapOptions(const SceneOptions& options) {
   return map;
 }
 
-// Where the end is at the start and how long the flight takes depend on each other. False if they do not
-// come together.
+// The end's place at the start and the duration of the flight depend on each other. False if they do not come together.
 bool SetEnd(const Eigen::Vector3d& v_end, const planning::Limits& limits, ReplanScene* scene) {
   const auto guess_for = [&](double T) {
     const MovingTarget end(scene->target, v_end, T);
@@ -176,8 +175,8 @@ planning::ReplanInput AskAt(const ReplanScene& scene, planning::Replanner* repla
   return input;
 }
 
-// At an arrival the end lies ahead by some distance, in some direction. Along that direction alone the point has to
-// get as far, and from its own speed to the end's.
+// At an arrival the end lies ahead by some distance, in some direction. Even along that direction alone the point has
+// to get that far, and from its own speed to the end's.
 double EarliestArrival(const ReplanScene& scene, const planning::Limits& limits) {
   constexpr double kClock = 0.01;
   double T = kClock;

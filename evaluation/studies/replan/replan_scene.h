@@ -36,8 +36,8 @@ struct ReplanScene {
   double duration = 0.0;              ///< the replanner's own guess for that end [s]
   double target_moved = 0.0;          ///< out of an obstacle, by this much [m]
   bool straight_blocked = true;       ///< an obstacle is in the straight way
-  /// The target was free or moved less than 1 m, A* on the known map joins start and target within
-  /// 1.3 times the straight length, and full braking from the start is free.
+  /// The target was free or moved less than 1 m. A* on the known map joins start and target within
+  /// 1.3 times the straight length. Full braking from the start is free.
   bool feasible = false;
 };
 
@@ -45,22 +45,21 @@ struct ReplanScene {
 planning::ReplannerOptions SceneReplannerOptions(const SceneOptions& options,
                                                  planning::ReplannerOptions base);
 
-/// Scene `index` of the set: its end passes the target when the replanner's own guess of the duration says.
-/// Scenes whose start is blocked, or where no time is the one that the replanner
-/// guesses for an end that moves so, are drawn again. The same options and index give the same scene.
-/// Throws std::invalid_argument for an option out of range, BadInput for a horizon that no map of this
-/// resolution holds.
+/// Scene `index` of the set. Its end passes the target when the replanner's own guess of the duration says. Scenes are
+/// drawn again if their start is blocked, or if no time agrees with the replanner's guess for an end that moves so. The
+/// same options and index give the same scene. Throws std::invalid_argument for an option out of range, BadInput for a
+/// horizon that no map of this resolution holds.
 ReplanScene DrawReplanScene(const SceneOptions& options, int index);
 
 /// Puts the replanner at the scene's start: it is flying there at the start's velocity.
 planning::ReplanInput AskAt(const ReplanScene& scene, planning::Replanner* replanner);
 
-/// No arrival is earlier [s after the start]: for a point with limits on the norms of velocity and
-/// acceleration, without obstacles. At most 0.01 s below the first time that passes the test, at most 60 s.
+/// A lower bound of the arrival [s after the start], for a point with limits on the norms of velocity and acceleration,
+/// without obstacles. At most 0.01 s below the first time that passes the test, at most 60 s.
 double EarliestArrival(const ReplanScene& scene, const planning::Limits& limits);
 
-/// Of `all`, what lies within `radius` of `centre` [m], as a sensor would have seen it: nothing else is known.
-/// Adds to what `map` knows already, in the same window.
+/// Adds to `map` the part of `all` within `radius` of `centre` [m], as a sensor would have seen it. Nothing else
+/// becomes known. What `map` knows already stays, in the same window.
 void LearnWithin(const planning::OccupancyMap& all, const Eigen::Vector3d& centre, double radius,
                  planning::OccupancyMap* map);
 

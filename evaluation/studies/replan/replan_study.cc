@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Every accepted plan is checked again at points 1 cm apart:
 // - its speed and acceleration;
-// - whether it is in one of the map's blocked cells, which the certificate has asked along chords;
-// - FCL's distance from these points to the obstacles themselves, which shares nothing with the certificate.
+// - the map's blocked cells, which the certificate has asked along chords;
+// - FCL's distance to the obstacles themselves, which shares nothing with the certificate.
 // Cells hold their obstacles. So a plan that is clear of the inflated cells is at least the inflation away from every
 // obstacle.
 #include "evaluation/studies/replan/replan_study.h"
@@ -24,7 +24,8 @@ constexpr double kStep = 0.01;          // between samples [m]
 constexpr double kWithin = 1.0 + 1e-6;  // of a limit
 constexpr double kRounding = 1e-3;      // of FCL's distance and of that point [m]
 
-/// In a blocked cell by more than the curve may leave its chords, for which the inflation makes up.
+/// Whether a point is in a blocked cell by more than the curve may leave its chords. The inflation
+/// covers that deviation.
 bool DeepInBlocked(const planning::OccupancyMap& map, const Eigen::Vector3d& p) {
   constexpr double s = planning::kChordSagitta;
   for (int corner = 0; corner < 8; ++corner) {
@@ -167,7 +168,7 @@ class SceneRunner {
       replanner_.Restore(from);
       const ReplanResult& result = replanner_.Replan(input, map);
       times.push_back(result.times);
-      // All answer the same. A check between two of them would empty the caches that the next one finds.
+      // All answer the same. A check between two of them would empty the caches for the next one.
       if (repeat + 1 == options_.repeats) Enter(result, scene, known, &row);
     }
     std::nth_element(times.begin(), times.begin() + times.size() / 2, times.end(),
@@ -190,7 +191,7 @@ class SceneRunner {
     if (row->step == SceneStep::kFirst) row->stretch = plan.duration() / scene.duration;
     row->lateness = plan.t_end() / earliest_;
     row->jerk = plan.SquaredJerk();
-    // A plan with a fixed arrival pays for its time, too: both sorts are compared.
+    // A plan with a fixed arrival also pays for its time, because both kinds are compared.
     row->cost = time_ ? time_->default_weight * plan.duration() : 0.0;
     for (const solvers::TermCost& term : result.solver.cost_by_term) {
       const bool pressed = std::find(pressed_.begin(), pressed_.end(), term.name) != pressed_.end();

@@ -29,7 +29,7 @@ struct ReplanStudyOptions {
   bool check = true;  ///< look for collisions at 1 cm, by map and by FCL
 };
 
-/// A plan seen at points 1 cm apart.
+/// The check of a plan at points 1 cm apart.
 struct PlanCheck {
   double length = 0.0;         ///< [m]
   bool map_blocked = false;    ///< a point lies in a blocked cell
@@ -96,7 +96,7 @@ struct ReplanSummary {
   int accepted = 0;       ///< in all scenes
   int checked = 0;        ///< of these
   int colliding = 0;      ///< of the checked
-  int disagreeing = 0;    ///< of the checked: one checker takes it for colliding and one does not
+  int disagreeing = 0;    ///< of the checked: the two checkers disagree about a collision
   int beyond_limits = 0;  ///< of the checked
   int asked = 0;          ///< scenes of which the oracle was asked
   int found = 0;          ///< of these, with a plan of the oracle's
@@ -109,7 +109,7 @@ struct ReplanSummary {
   std::optional<double> lateness, cost, jerk;  ///< medians of the accepted plans
 };
 
-/// Runs the steps of every scene; deterministic but for the times. `report` is told of progress.
+/// Runs the steps of every scene; deterministic except for the times. `report` gets the progress.
 std::vector<ReplanRow> RunReplanStudy(const ReplanStudyOptions& options,
                                       const solvers::BackendRegistry& backends,
                                       const std::function<void(int done, int all)>& report);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The forests and the fast targets are those in which the released EGO-Planner was measured; slits, dead
-// ends and yards are made for what a forest does not ask.
+// The forests and the fast targets are those in which the released EGO-Planner was measured. Slits, dead ends and yards
+// test what a forest does not.
 #include "evaluation/studies/replan/scene_sets.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sets of single replanning steps: what is asked, and in which world.
+// Sets of single replanning steps: the question and the world.
 #pragma once
 
 #include <string>
@@ -14,7 +14,7 @@
 
 namespace touchdown::evaluation {
 
-/// A question in a world, before there is a map of it. All vectors in W.
+/// The planning question in a world, before there is a map of it. All vectors in W.
 struct SceneSketch {
   sim::ObstacleField field;
   double height = 3.0;                               ///< of the world [m]
@@ -25,7 +25,7 @@ struct SceneSketch {
   Eigen::Vector3d passing = Eigen::Vector3d::Zero();  ///< velocity relative to it at arrival [m/s]
 };
 
-/// A set of scenes. `draw` takes from the stream what it needs; the kind gives limits and inflation.
+/// A set of scenes. `draw` draws from the stream; the kind gives limits and inflation.
 struct SceneSet {
   const char* name;
   const char* what;  ///< one line

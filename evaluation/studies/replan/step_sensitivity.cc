@@ -53,7 +53,7 @@ std::vector<ReplanRow> Run(ReplanStudyOptions options, const planning::StepConst
   return RunReplanStudy(options, scenes, backends);
 }
 
-/// Later steps follow a first one that planned: only those that both runs have are compared.
+/// Later steps follow a first one that planned. Only steps that both runs have are compared.
 void Compare(const std::vector<ReplanRow>& before, const std::vector<ReplanRow>& after,
              Tally* tally) {
   const auto key = [](const ReplanRow& row) { return std::pair(row.index, row.step); };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What each constant of a replanning step is worth: every one is changed by a quarter down and up, and the same
-// scenes are asked again.
+// The effect of each constant of a replanning step. Each one is changed by a quarter down and up, and the same scenes
+// are asked again.
 #pragma once
 
 #include <functional>
@@ -26,8 +26,8 @@ struct SensitivityRow {
   double mean_cost = 1.0;  ///< of the plans of steps that plan in both, over before
 };
 
-/// First and later steps of `options.count` scenes of every part, which differ in set and kind. Nothing is timed:
-/// the same parts give the same rows. `report` is told of progress.
+/// First and later steps of `options.count` scenes of every part. The parts differ in set and kind. Nothing is timed:
+/// the same parts give the same rows. `report` gets the progress.
 std::vector<SensitivityRow> MeasureSensitivity(
     const std::vector<ReplanStudyOptions>& parts, const solvers::BackendRegistry& backends,
     const std::function<void(int done, int all)>& report);

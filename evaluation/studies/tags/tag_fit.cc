@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Fits the fast tag camera to rendered views. Detection: the probit's two constants by maximum likelihood over all tags
-// in view, on a grid that is refined. (A part of the noise common to all tags of an image fits to nothing.) Noise: the
-// fast camera looks from each view with some noise of the corners. In each class of sizes the noise is scaled so that the
-// medians of the position errors agree, because the error is proportional to the noise. It is scaled again for
-// what is not linear.
+// in view, on a grid that is refined. (A part of the noise common to all tags of an image is fitted as zero.) Noise:
+// the fast camera looks from each view with some noise of the corners. The error is proportional to the noise. So in
+// each class of sizes the noise is scaled until the medians of the position errors agree. A second scaling corrects
+// nonlinear effects.
 #include "evaluation/studies/tags/tag_fit.h"
 
 #include <algorithm>

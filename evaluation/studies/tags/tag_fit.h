@@ -11,7 +11,7 @@
 
 namespace touchdown::evaluation {
 
-/// The constants with which the fast tag camera does what the rendered one did in these views.
+/// The constants with which the fast tag camera agrees with the rendered one in these views.
 /// @throws std::invalid_argument if no view found the pad.
 sim::TagModel FitTagModel(const TagStudyOptions& options, const std::vector<TagStudyRow>& rows);
 

@@ -16,7 +16,7 @@ struct TagStudyPart {
   std::vector<TagStudyRow> rows;
 };
 
-/// What is demanded of the pose on images without noise: medians of the position error [mm].
+/// Demands on the pose from images without noise: medians of the position error [mm].
 inline constexpr double kNearErrorMm = 3.0;  ///< below kNearHeight
 inline constexpr double kFarErrorMm = 15.0;  ///< from there to kHighestView
 inline constexpr double kNearHeight = 4.0;   ///< [m]

@@ -72,7 +72,7 @@ double ShortestSide(const Eigen::Matrix<double, 2, 4>& corners) {
   return shortest;
 }
 
-// What is true of a tag seen from the true pose, and what was made of it.
+// A tag seen from the true pose: the truth and the detection.
 TagRow RowOf(const estimation::PadTag& tag, const Eigen::Vector3d& p_CP,
              const Eigen::Matrix3d& R_CP, const estimation::CameraIntrinsics& camera,
              const std::vector<estimation::TagDetection>& found) {

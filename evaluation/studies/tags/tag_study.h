@@ -14,7 +14,7 @@
 
 namespace touchdown::evaluation {
 
-/// Rendered views of the pad from random places: where it is found, how well, and how sure.
+/// Rendered views of the pad from random places: whether it is found, with which error and which claimed error.
 struct TagStudyOptions {
   int poses = 500;
   std::uint64_t seed = 1;
@@ -65,7 +65,7 @@ using ViewObserver =
     std::function<void(int, const estimation::GrayImage&, const estimation::PadView&,
                        const estimation::CameraIntrinsics&)>;
 
-/// The views of `options`, the same for any camera but for its field of view.
+/// The views of `options`. They are the same for any camera, except for its field of view.
 /// @throws std::invalid_argument naming the option. @param progress done, all.
 std::vector<TagStudyRow> RunTagStudy(const TagStudyOptions& options,
                                      const std::function<void(int, int)>& progress,

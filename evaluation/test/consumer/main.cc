@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The planner alone, on an installed library: a wall that was put into the map by hand, a pad that
-// drives straight, one certified plan around the wall.
+// The planner alone, on an installed library. A wall is put into the map by hand, the pad drives
+// straight, and one certified plan leads around the wall.
 #include <iostream>
 
 #include "touchdown/planning/map/occupancy_map.h"

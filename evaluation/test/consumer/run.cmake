@@ -1,6 +1,6 @@
-# Installs BUILD_DIR to a fresh prefix, then configures, builds and runs against it: this folder, and
-# the programs of docs/adding_a_term.md, whose terms every backend meets, and of
-# docs/adding_a_backend.md in EXAMPLES. The tests of the documents run what is built here.
+# Installs BUILD_DIR to a fresh prefix. Then configures, builds and runs against it: this folder and the programs in
+# EXAMPLES. Every backend meets the terms of docs/adding_a_term.md; the program of docs/adding_a_backend.md has its own
+# backend. The tests of the documents run what is built here.
 cmake_minimum_required(VERSION 3.25)
 
 foreach(name BUILD_DIR WORK_DIR EXAMPLES)

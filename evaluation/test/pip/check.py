@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The package below the folder that is named: it is whole, and flies with the program that it was installed with."""
+"""Checks that the package below the named folder is whole, and flies with the program of its installation."""
 import os
 import sys
 from pathlib import Path

@@ -1,5 +1,5 @@
-# Installs what BUILD_DIR holds as the Python package, by pip into a fresh environment and by CMake into a fresh prefix, and
-# flies with each: without the network, and from elsewhere.
+# Installs the Python package of BUILD_DIR by pip into a fresh environment and by CMake into a fresh prefix. Flies with
+# each, without the network and from elsewhere.
 cmake_minimum_required(VERSION 3.25)
 
 include("${CMAKE_CURRENT_LIST_DIR}/../package_steps.cmake")

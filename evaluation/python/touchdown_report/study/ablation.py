@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What each part contributes: the default with one thing changed, over all cells."""
+"""The contribution of each part: the default with one thing changed, over all cells."""
 from touchdown_report.study import figures, tables
 from touchdown_report.study.statistics import Estimate
 from touchdown_report.study.texts import interval, p_value

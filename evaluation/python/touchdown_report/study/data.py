@@ -16,8 +16,8 @@ class StudyError(Exception):
 
 
 class Study:
-    """`plan` (study.json), `manifest` {key: value}, `trials`: one row a trial with its cell, method,
-    labels, figures, timing and `command`; `replans`: one row a replanning step with its times."""
+    """`plan` (study.json), `manifest` {key: value}, `trials` and `replans`. A row of `trials` is a trial with its cell,
+    method, labels, figures, timing and `command`. A row of `replans` is a replanning step with its times."""
 
     def __init__(self, folder):
         self.folder = folder
@@ -85,7 +85,7 @@ class Study:
         return next(entry["labels"] for entry in self.plan["cells"] if entry["name"] == cell)
 
     def asks_to_land(self, cell, method):
-        """False where flights only follow the pad, which is when that is measured."""
+        """False where flights only follow the pad. Following is measured only then."""
         return bool(self.part(cell, method)["following_mean_error_m"].isna().all())
 
     def follows_before_it_sinks(self, cell, method):
@@ -100,7 +100,7 @@ class Study:
         return self.plan["reference"]
 
     def page_link(self, name):
-        """What links to the page that shows a recorded flight; '' where there is none."""
+        """A link to the page that shows a recorded flight; '' where there is none."""
         page = f"records/{name}.html"
         if not os.path.exists(os.path.join(self.folder, page)):
             return ""

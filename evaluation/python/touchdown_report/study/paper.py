@@ -78,7 +78,7 @@ def _half_landed(study, cell, method):
 
 
 def _of_some(study, cell):
-    """What a verdict about landed flights leaves out."""
+    """The part of the flights that a verdict is about, if not all landed."""
     landed = study.part(cell, "vertical")["landed"]
     return "" if landed.all() else f", of the {landed.sum()} of {len(landed)} that landed"
 

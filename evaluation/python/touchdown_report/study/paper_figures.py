@@ -126,8 +126,8 @@ def positions(found):
 
 
 def near_landing(found):
-    """Figures 9 and 12: the position error over the last seconds, a column for each style with scales of
-    its own: what is a straight line in one is the whole approach in the other."""
+    """Figures 9 and 12: the position error over the last seconds. Each style has a column with scales of
+    its own, because a straight line in one is the whole approach in the other."""
     figure, axes = plt.subplots(
         3, len(found), figsize=(PAGE, 5.0), squeeze=False, layout="constrained"
     )

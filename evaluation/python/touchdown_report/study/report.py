@@ -221,7 +221,7 @@ def _how(study, document):
 
 
 def _selected(study):
-    """What of the study was asked for, where it is not the whole."""
+    """The selected part of the study, where it is not the whole."""
     asked = study.plan.get("selection")
     if not asked:
         return ""
@@ -262,7 +262,7 @@ def _rows(table):
 
 
 def _summary(study, document, parts, comparisons, counts, failures):
-    """All that the page shows, as numbers under the names of csv/, and its tables as they are read."""
+    """The page's content: numbers under the names of csv/, and its tables as texts."""
     titles = {"cell_title": study.cell_title, "method_title": study.method_title}
     rows = [
         {**row, **{key: title(row[key.removesuffix("_title")]) for key, title in titles.items()}}
@@ -284,7 +284,7 @@ def _summary(study, document, parts, comparisons, counts, failures):
 
 
 def _write(folder, name, text):
-    """Whole or not at all."""
+    """Writes a file whole or not at all."""
     path = os.path.join(folder, name)
     with open(path + ".part", "w", encoding="utf-8") as stream:
         stream.write(text)
@@ -292,7 +292,7 @@ def _write(folder, name, text):
 
 
 def write_report(study):
-    """Everything that is made from the folder of a study."""
+    """Writes everything that is made from the folder of a study."""
     gallery = Gallery(study.folder)
     document = Document(study.plan["title"])
     parts, comparisons = tables.parts(study), tables.comparisons(study)

@@ -12,7 +12,7 @@ from touchdown_report.study.texts import interval, number, percent
 
 def latency(study):
     """One row for each backend in each cell: replanning steps, quantiles of their thread CPU time [ms],
-    steps that took longer than the latency that they were flown with."""
+    and steps that took longer than their latency in flight."""
     steps = study.replans.merge(study.trials[["trial", "cell", "method"]], on="trial")
     rows = []
     for (cell, method), own in steps.groupby(["cell", "method"], sort=False):
@@ -45,7 +45,7 @@ def trial_costs(study, cells):
 
 
 def _common_cells(study):
-    """Cells that every backend flew, with plans that take as long as they are given."""
+    """Cells that every backend flew with a fixed latency."""
     everyone = set(study.methods())
     return [
         cell

@@ -69,8 +69,8 @@ def _resampled(sample, statistic, **options):
 
 def bootstrap(values):
     """Median of a sample with its bias-corrected accelerated bootstrap interval. Fewer than
-    six values have no interval: resampling never leaves the sample's range, which holds the median of what was
-    sampled with less than 95 % then. Values that are all alike have one of no width."""
+    six values have no interval: resampling never leaves the sample's range, and that range then holds the median of
+    the population with less than 95 %. Equal values have an interval of zero width."""
     values = np.asarray(values, dtype=float)
     values = values[np.isfinite(values)]
     if values.size == 0:
@@ -84,9 +84,9 @@ def bootstrap(values):
 
 
 def clustered_bootstrap(values):
-    """Median of all values of a table of seeds (rows) by cells, NaN where there is none, with an interval under
-    resampling of whole seeds: the same seed is nearly the same trial in several cells, so that values of one
-    row say less than as many of different rows. `n` counts the values."""
+    """Median of all values of a table of seeds (rows) by cells, NaN where there is none. Its interval is by
+    resampling of whole seeds. The same seed is nearly the same trial in several cells, so values of one
+    row carry less information than as many of different rows. `n` counts the values."""
     table = np.asarray(values, dtype=float)
     table = table[np.isfinite(table).any(axis=1)]
     count = int(np.isfinite(table).sum())
@@ -129,14 +129,14 @@ def paired_success(first, second):
 
 
 def pooled_success(pairs):
-    """Two methods on the same seeds in several cells ((first, second) of each: boolean Series by seed): a
-    permutation test of the sum of the differences in success, which swaps the methods in all cells of a seed at
-    once. Pairs of one seed are not independent; pairs of different seeds are. Exact for few seeds, by
+    """Compares two methods on the same seeds in several cells ((first, second) of each: boolean Series by seed).
+    It is a permutation test of the sum of the differences in success. It swaps the methods in all cells of a seed at
+    once, because pairs of one seed are not independent; pairs of different seeds are. Exact for few seeds, by
     9999 permutations for many, where p is at least 0.0002."""
     cells = [paired_success(first, second) for first, second in pairs]
     net = pd.concat([a.astype(float) - b.astype(float) for a, b in pairs], axis=1).sum(axis=1).to_numpy()
     p = 1.0 if len(net) else np.nan
-    net = net[net != 0]  # what is the same either way decides nothing
+    net = net[net != 0]  # equal results decide nothing
     if len(net) > 1:
         result = stats.permutation_test(
             (net, np.zeros_like(net)),
@@ -153,7 +153,7 @@ def pooled_success(pairs):
 
 
 def holm(p_values):
-    """Holm's adjusted p-values, in the same order. What has no p-value is no test."""
+    """Holm's adjusted p-values, in the same order. An entry without a p-value is no test."""
     adjusted = np.array(p_values, dtype=float)
     tests = np.isfinite(adjusted)
     if tests.any():
@@ -164,7 +164,7 @@ def holm(p_values):
 @dataclass
 class Survival:
     """Share that has landed over time (Kaplan-Meier), as a step function that begins at t = 0, with
-    pointwise 95 % bounds, and the time by which half has landed (infinite: less than half ever does)."""
+    pointwise 95 % bounds. `median` is the time by which half has landed (infinite: less than half ever does)."""
 
     time: np.ndarray
     landed: np.ndarray
@@ -174,9 +174,9 @@ class Survival:
 
 
 def time_to_land(times, landed, horizon):
-    """Kaplan-Meier estimate. What did not land is censored at the end of its time, `horizon`, whenever
-    it ended: a crash does not land later. Nothing is censored earlier, so that the share at each time is a
-    proportion and has the bounds of Clopper and Pearson; Greenwood's would have no width at 0 and 1."""
+    """Kaplan-Meier estimate. A flight that did not land is censored at the end of its time, `horizon`, whenever
+    it ended: a crash does not land later. Nothing is censored earlier, so the share at each time is a
+    proportion. It has the bounds of Clopper and Pearson; Greenwood's would have no width at 0 and 1."""
     landed = np.asarray(landed, dtype=bool)
     times = np.where(landed, np.asarray(times, dtype=float), np.asarray(horizon, dtype=float))
     count = len(times)
@@ -206,7 +206,7 @@ def time_to_land(times, landed, horizon):
 
 def performance_profile(costs):
     """Dolan and More's profile of a table of costs (rows: problems, columns: solvers; infinite where a
-    solver failed): {solver: (ratios, share of problems within them)}. Problems that nobody solves count."""
+    solver failed): {solver: (ratios, share of problems within them)}. Problems that no solver solves count."""
     best = costs.min(axis=1)
     profiles = {}
     for solver in costs.columns:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the trials of any study come to, as pandas tables: one row for each method in each cell, for each
+"""Results of any study's trials, as pandas tables. They have one row for each method in each cell, for each
 pair of methods, for each outcome and for each failure."""
 import numpy as np
 import pandas as pd
@@ -28,7 +28,7 @@ def succeeded(trials):
 
 
 def not_cut_short(trials):
-    """Of flights that only follow, those that did so until their time was up, however far behind."""
+    """Flights of a following task that went on until their time was up, however far behind."""
     return trials["outcome"].isin(["followed", "timeout", "lost_pad", "infeasible"])
 
 
@@ -110,9 +110,9 @@ def _compare(study, cell, method, pairs):
 
 
 def comparisons(study):
-    """Each method against the reference on the same seeds: in each cell, and over all cells that both
-    flew in (`cell` = all), where seeds, not pairs, are what is drawn independently. `p_holm` is adjusted over the
-    cells, and apart from them over the methods."""
+    """Each method against the reference on the same seeds, in each cell and over all cells that both
+    flew in (`cell` = all). Over all cells the seeds are independent, the pairs are not. `p_holm` is adjusted over the
+    cells, and separately over the methods."""
     rows = []
     pooled = {}
     for cell, method in study.parts():
@@ -132,13 +132,13 @@ def comparisons(study):
 
 
 def failures(study):
-    """Every trial that did not come to what it was to, with the command that flies it again."""
+    """Every trial that did not fulfil its task, with the command that flies it again."""
     bad = study.trials[~succeeded(study.trials)]
     return bad[["trial", "cell", "method", "seed", "outcome", "simulated_s", "detail", "command"]]
 
 
 def trials(study):
-    """Every trial, labels first, what stays empty left out."""
+    """Every trial, labels first, without empty columns."""
     lead = ["trial", "cell", "method", "seed"]
     labels = [key for key in study.labels(study.cells()[0]) if key in study.trials]
     rest = [c for c in study.trials if c not in lead + labels + ["command"]]

@@ -6,7 +6,7 @@
 
 namespace touchdown::evaluation {
 
-/// Where scenarios, studies and the report's package are installed, for a program that is not installed beside them.
+/// Where scenarios, studies and the report's package are installed. For a program that is not installed beside them.
 bool UseShare(const std::string& directory);
 
 /// Path of the scenario file called `name_or_path`: an existing path, or the name of a shipped one

@@ -5,7 +5,7 @@
 
 namespace touchdown::evaluation {
 
-/// What a key may hold, for messages and documentation.
+/// The allowed values of a key, for messages and documentation.
 struct ValueRange {
   double lo = 0.0;
   double hi = 0.0;

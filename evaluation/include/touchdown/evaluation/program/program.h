@@ -9,9 +9,10 @@
 namespace touchdown::evaluation {
 
 /// The program `touchdown`. Results go to stdout, logs to stderr. Returns the exit status:
-/// - 0: done. `land`: landed, and all that was asked for is written. `sweep`: every trial has an outcome, whichever.
-/// - 1: ran but fell short: not landed, a picture or file that could not be made, a trial without an outcome (`error`,
-///   `crashed`, `hung`), a demand of a study that is missed, derivatives that disagree (`check-term`), an internal error.
+/// - 0: done. `land`: landed, and all requested files are written. `sweep`: every trial has an outcome, whichever.
+/// - 1: ran but fell short. Examples: not landed; a picture or file that could not be made; a trial without an outcome
+///   (`error`, `crashed`, `hung`); a study that misses a demand; derivatives that disagree (`check-term`); an internal
+///   error.
 /// - 2: bad usage or bad input. Nothing was run and nothing written.
 /// - 128 + N: a sweep was interrupted by signal N (SIGINT, SIGTERM).
 int RunProgram(int argc, const char* const* argv, const Registries& registries);

@@ -17,7 +17,7 @@ struct ControllerSetup : PartSetup {
 
 /// How a tracking law gets into the program.
 struct ControllerEntry : Part {
-  /// It is told of the estimated disturbance, and its thrusts lead the rotors' lag.
+  /// It gets the estimated disturbance, and its thrusts lead the rotors' lag.
   bool compensates = true;
   std::function<std::unique_ptr<control::Controller>(const ControllerSetup&)> make;
 };

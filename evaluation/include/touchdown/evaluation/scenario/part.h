@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What planners, pad motions, controllers and pad predictors have in common: a name that a scenario chooses them by, and
-// numbers of their own in it.
+// What planners, pad motions, controllers and pad predictors have in common. Each has a name, by which a scenario
+// chooses it, and numbers of its own in the scenario.
 #pragma once
 
 #include <algorithm>
@@ -26,7 +26,7 @@ struct Parameter {
   std::string doc;  ///< one line
 };
 
-/// What every entry of a registry says of itself.
+/// What every entry of a registry gives.
 struct Part {
   std::string name;     ///< the word in a scenario
   std::string summary;  ///< one line of `touchdown list`

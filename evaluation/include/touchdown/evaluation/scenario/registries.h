@@ -10,7 +10,7 @@
 
 namespace touchdown::evaluation {
 
-/// What the program offers: an out-of-tree project adds its own entries and has every sub-command.
+/// What the program offers. An out-of-tree project adds its own entries and gets every sub-command.
 struct Registries {
   solvers::BackendRegistry backends;
   planning::TermRegistry terms;
@@ -26,8 +26,9 @@ Registries StandardRegistries();
 /// The parameters of all parts, each once.
 std::vector<Parameter> ParametersOf(const Registries& registries);
 
-/// Throws std::invalid_argument naming what stands twice, a part that nothing can be made from, and a parameter whose key
-/// is one of the program's or is not the same in two parts.
+/// Names are words and distinct. Every part has a `make`. A planner's rate is finite and >= 0. A parameter's key is
+/// none of the program's. Its default is in its range. Both are the same in all parts that share the key.
+/// @throws std::invalid_argument naming the first entry that breaks a rule.
 void RequireDistinct(const Registries& registries);
 
 }  // namespace touchdown::evaluation

@@ -188,8 +188,8 @@ struct Scenario {
   std::string map_prior = "none";
   ObservedFreeKind map_observed_free = ObservedFreeKind::kSensed;
   double map_thinnest_obstacle = 0.1;  ///< [m]
-  /// Around the start, in all directions. The camera sees the edge of the hull's way only from 0.7 m ahead, and a
-  /// cell is to spare [m].
+  /// Around the start, in all directions [m]. The camera sees the edge of the hull's way only from 0.7 m ahead; one
+  /// cell is spare.
   double map_start_free = 0.8;
 
   /// The air; without any of it, it stands still.
@@ -246,7 +246,8 @@ struct Scenario {
     bool warm_start = true;  ///< solves begin at the committed plan
   } planning;
 
-  /// Of planners, pad motions, controllers and predictors, by key; what is not here has the part's default.
+  /// Parameters of planners, pad motions, controllers and predictors, by key. One that is not here has the part's
+  /// default.
   std::map<std::string, double> parameters;
 
   std::string own_solver;  ///< of a planner that has no choice; not a key

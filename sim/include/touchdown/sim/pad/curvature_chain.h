@@ -24,10 +24,10 @@ struct PathBounds {
   double curvature_slope = 0.0;  ///< [1/m^2]
 };
 
-/// A plane path of straights, arcs and smooth turns, in arc length: a chain of segments within which
-/// the curvature goes from one value to another along the smooth step 3u^2 - 2u^3, so that curvature
-/// and its slope are continuous over the chain if its values are. The first segment goes on backwards
-/// and the last one forwards without end, as long as their curvature is constant.
+/// A plane path of straights, arcs and smooth turns, in arc length. It is a chain of segments. Within a segment the
+/// curvature goes from one value to another along the smooth step 3u^2 - 2u^3. So curvature and its slope are
+/// continuous over the chain if its values are. The first segment continues backwards and the last one forwards without
+/// end, if their curvature is constant.
 class CurvatureChain {
  public:
   CurvatureChain(const Eigen::Vector2d& start, double heading) : start_(start), heading_(heading) {}

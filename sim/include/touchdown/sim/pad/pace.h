@@ -13,9 +13,9 @@ struct PacePoint {
   double jerk = 0.0;          ///< [m/s^3]
 };
 
-/// How a path is driven: way over time, made of stretches of constant speed whose changes are smoothed
-/// over three times `smoothing` [s], so that speed, acceleration and jerk are continuous. Before the
-/// first and after the last knot the speed stays what it is there, unless the pace is periodic.
+/// How a path is driven: arc length over time, in stretches of constant speed. Changes of speed are smoothed over three
+/// times `smoothing` [s], so that speed, acceleration and jerk are continuous. Before the first and after the last knot
+/// the speed stays what it is there, unless the pace is periodic.
 class Pace {
  public:
   struct Knot {
@@ -27,8 +27,8 @@ class Pace {
   /// smoothing > 0.
   Pace(std::vector<Knot> knots, double smoothing);
 
-  /// From the first knot to the last and so on for ever, before the first one too; the way goes on by
-  /// what it is between them. Throws likewise, and unless a period is 1.5 times `smoothing` or longer.
+  /// The knots repeat for ever, forwards and backwards in time. Each period adds the arc length between the first and
+  /// the last knot. Throws likewise, and unless a period is 1.5 times `smoothing` or longer.
   static Pace Periodic(const std::vector<Knot>& knots, double smoothing);
 
   /// Any finite t [s]. Does not allocate.

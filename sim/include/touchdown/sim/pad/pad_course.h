@@ -26,9 +26,9 @@ class PadCourse {
  public:
   virtual ~PadCourse() = default;
 
-  /// State at time t [s], any finite t, also negative. v, a, j are the exact derivatives of p; all
-  /// of them are continuous. The height is constant. The yaw is not wrapped, so that it is continuous too; a pad that
-  /// drives backwards keeps it. cov_p is zero. Does not allocate.
+  /// State at time t [s], any finite t, also negative. v, a, j are the exact derivatives of p. All are continuous. The
+  /// height is constant. The yaw is not wrapped, so it is continuous too. A pad that drives backwards keeps its yaw.
+  /// cov_p is zero. Does not allocate.
   virtual estimation::PadState At(double t) const noexcept = 0;
 
   virtual PadMotionBounds bounds() const = 0;
