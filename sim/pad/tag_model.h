@@ -20,7 +20,7 @@ struct TagModel {
   /// Noise of the corners of the tags that are found [pixel].
   std::array<double, kKnots> corner_sigma = {0.224, 0.224, 0.224, 0.224, 0.224,
                                              0.224, 0.224, 0.076, 0.044};
-  /// The same where the whole sheet is aligned with the image: of all tags in view, found or not.
+  /// The same where the whole sheet is aligned with the image: of all tags with their centre in it, found or not.
   std::array<double, kKnots> sheet_sigma = {0.0405, 0.0405, 0.0373, 0.0200, 0.0103,
                                             0.0140, 0.0119, 0.0119, 0.0119};
 };
