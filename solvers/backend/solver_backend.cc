@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The part of a solve that is the same for every backend (a non-virtual interface, as in Drake's
-// SolverBase): refuse what the backend cannot take, check the caller's numbers, time the solve, and
-// return the best feasible point that the evaluator saw.
+// SolverBase). It refuses what the backend cannot take, checks the caller's numbers and times the
+// solve. It returns the best feasible point that the evaluator saw.
 
 #include "touchdown/solvers/backend/solver_backend.h"
 
