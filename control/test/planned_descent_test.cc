@@ -9,8 +9,8 @@ namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
-// A mission that tracks with a plan which touches the deck in `arrival` seconds; distance and height
-// shrink with the time that is left, as they do on a plan.
+// A mission in tracking with a plan that touches the deck in `arrival` seconds. Distance and height
+// shrink with the remaining time, as they do on a plan.
 class Approach : public Mission {
  public:
   explicit Approach(double arrival = 4.0) {
