@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Is the covariance of OwnStateFilter honest? Monte Carlo on flights with accelerations and turns,
-// every error drawn from the filter's own model: the sum of the normalised errors squared of n runs
-// is chi-squared with n times the state's size.
+// Tests the consistency of OwnStateFilter's covariance by Monte Carlo, on flights with
+// accelerations and turns. Every error is drawn from the filter's own model. The sum of the
+// normalised errors squared of n runs is then chi-squared with n times the state's size.
 #include <string>
 
 #include <gtest/gtest.h>

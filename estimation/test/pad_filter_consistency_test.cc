@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Is the filter's covariance honest? Monte Carlo on pads drawn from the turn-rate model itself:
-// the sum of the normalised errors squared of n runs is chi-squared with n times the state's size.
+// Tests the consistency of the filter's covariance by Monte Carlo, on pads drawn from the turn-rate
+// model. The sum of the normalised errors squared of n runs is then chi-squared with n times the
+// state's size.
 #include <cmath>
 #include <random>
 #include <string>

@@ -19,15 +19,15 @@ struct PadAlignmentOptions {
   double neighbors = 1.0;  ///< pixels that err alike: one of so many counts in the covariance, >= 1
 };
 
-/// Makes the pose of a pad that is small in the image sharper: instead of the corners of the tags
-/// that were found, every pixel of the printed sheet speaks, found tag or not.
+/// Makes the pose of a pad that is small in the image more exact. It uses every pixel of the
+/// printed sheet, in found tags or not, instead of the corners of the found tags.
 class PadAlignment {
  public:
   /// Throws std::invalid_argument for an option out of its range.
   explicit PadAlignment(const PadAlignmentOptions& options = {});
 
-  /// Replaces pose and covariance if the printed sheet is found in the image near where the pose
-  /// puts it; else leaves them as they are. `pose` must be kSolved. Allocates at the first images.
+  /// Replaces pose and covariance if the printed sheet is found in the image near the pose.
+  /// Otherwise leaves them as they are. `pose` must be kSolved. Allocates at the first images.
   /// @param normal what is known of the deck's normal, as in SolvePadPose.
   /// @returns whether the pose was replaced.
   bool Refine(const GrayImageView& image, const CameraIntrinsics& camera,
