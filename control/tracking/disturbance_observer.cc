@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Two extended state observers, one for the velocity and one for the angular rate. Each predicts the measured
-// quantity by the model and the disturbance, and the disturbance as a constant. The innovation corrects both (J. Han,
-// "From PID to active disturbance rejection control", IEEE Trans. Industrial Electronics 56(3), 2009). Both poles lie
-// at one bandwidth w (Z. Gao, "Scaling and bandwidth-parameterization based controller tuning", ACC 2003). The
-// estimate is the true disturbance behind w^2 / (s + w)^2: no steady error, no overshoot. The noise of the velocity
-// reaches it with a slope of -1 above w. In discrete time both poles are at z = exp(-w dt) with the gains 1 - z^2 and
-// (1 - z)^2 / dt.
+// Two extended state observers, one for the velocity and one for the angular rate. Each predicts
+// the measured quantity by the model and the disturbance, and the disturbance as a constant. The
+// innovation corrects both (J. Han, "From PID to active disturbance rejection control", IEEE Trans.
+// Industrial Electronics 56(3), 2009). Both poles lie at one bandwidth w (Z. Gao, "Scaling and
+// bandwidth-parameterization based controller tuning", ACC 2003). The estimate is the true
+// disturbance behind w^2 / (s + w)^2: no steady error, no overshoot. The noise of the velocity
+// reaches it with a slope of -1 above w. In discrete time both poles are at z = exp(-w dt) with the
+// gains 1 - z^2 and (1 - z)^2 / dt.
 //
 // The thrusts of the model are those that were commanded after the mixer's limits, behind the
 // rotors' lag. So saturation cannot wind the observer up.

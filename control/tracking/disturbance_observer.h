@@ -31,9 +31,9 @@ class DisturbanceObserver {
   explicit DisturbanceObserver(const estimation::VehicleModel& model,
                                const DisturbanceObserverOptions& options = {});
 
-  /// Takes the state at state.t, before thrusts for it are commanded. Once per control step, in time order. A state
-  /// is ignored if it is not finite, or if its velocity jumped farther than forces can make it. A filter's velocity
-  /// does so when its sensors are back. Does not allocate.
+  /// Takes the state at state.t, before thrusts for it are commanded. Once per control step, in
+  /// time order. A state is ignored if it is not finite, or if its velocity jumped farther than
+  /// forces can make it. A filter's velocity does so when its sensors are back. Does not allocate.
   /// @param held nothing is learned now: feet in contact push too.
   const Disturbance& Update(const estimation::VehicleState& state, bool held) noexcept;
 

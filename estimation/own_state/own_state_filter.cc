@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bookkeeping of the own-state filter: inputs in, time order, replay, status. The history is a ring of inputs with
-// the state after each. An input that is older than others is put in its place, and all from there on is processed
-// again. Between two inputs the state is propagated by the IMU sample whose interval they lie in, which is the next
-// one in the history. So a measurement between two samples splits the later one's interval. For a measurement ahead
-// of the IMU, the last sample propagates the state. It is processed again when its own sample has come. Corrections
-// are in own_state_update.cc.
+// Bookkeeping of the own-state filter: inputs in, time order, replay, status. The history is a ring
+// of inputs with the state after each. An input that is older than others is put in its place, and
+// all from there on is processed again. Between two inputs the state is propagated by the IMU
+// sample whose interval they lie in, which is the next one in the history. So a measurement between
+// two samples splits the later one's interval. For a measurement ahead of the IMU, the last sample
+// propagates the state. It is processed again when its own sample has come. Corrections are in
+// own_state_update.cc.
 
 #include "touchdown/estimation/own_state/own_state_filter.h"
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Least squares over SE(3) of the corners' distances in the image, by Levenberg and Marquardt's method (K. Madsen, H.
-// Nielsen and O. Tingleff, Methods for Non-linear Least Squares Problems, 2004, alg. 3.16). It starts from the
-// homography's pose and from the mirrored one; the lower cost wins. The corners' noise is the mean of a scaled
-// inverse chi-squared law with corner_sigma as prior (A. Gelman et al., Bayesian Data Analysis, section 2.6). So one
-// tag, which has two residuals more than unknowns, does not give a noise of zero. The covariance is that of the
+// Least squares over SE(3) of the corners' distances in the image, by Levenberg and Marquardt's
+// method (K. Madsen, H. Nielsen and O. Tingleff, Methods for Non-linear Least Squares Problems,
+// 2004, alg. 3.16). It starts from the homography's pose and from the mirrored one; the lower cost
+// wins. The corners' noise is the mean of a scaled inverse chi-squared law with corner_sigma as
+// prior (A. Gelman et al., Bayesian Data Analysis, section 2.6). So one tag, which has two
+// residuals more than unknowns, does not give a noise of zero. The covariance is that of the
 // mixture of both poses, about the one chosen.
 
 #include "touchdown/estimation/tags/pad_pose.h"

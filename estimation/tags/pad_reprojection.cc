@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pinhole projection of a plane's points with its derivatives, the homography, its decomposition H ~ [r1 r2 p], and
-// the mirrored pose. The homography comes from the normalised direct linear transformation (R. Hartley and A.
-// Zisserman, Multiple View Geometry, alg. 4.2). Under weak perspective along the unit vector d, the image only
-// depends on the first two columns of R across d. (1 - 2 d d^T) R diag(1, 1, -1) leaves these unchanged (D. Oberkampf
-// et al., "Iterative pose estimation using coplanar feature points", 1996).
+// Pinhole projection of a plane's points with its derivatives, the homography, its decomposition H
+// ~ [r1 r2 p], and the mirrored pose. The homography comes from the normalised direct linear
+// transformation (R. Hartley and A. Zisserman, Multiple View Geometry, alg. 4.2). Under weak
+// perspective along the unit vector d, the image only depends on the first two columns of R across
+// d. (1 - 2 d d^T) R diag(1, 1, -1) leaves these unchanged (D. Oberkampf et al., "Iterative pose
+// estimation using coplanar feature points", 1996).
 
 #include "touchdown/estimation/tags/pad_reprojection.h"
 

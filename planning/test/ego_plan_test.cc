@@ -109,8 +109,8 @@ TEST(EgoPlan, ReboundsAndRestartsEnd) {
 }
 
 TEST(EgoPlan, ASlowedDownCurveThatHitsIsNoPlan) {
-  // The curve that is slowed down swings wider than the one that was checked: behind the vehicle,
-  // where it turns round at twice the speed that it may fly.
+  // The curve that is slowed down swings wider than the one that was checked. It does so behind the
+  // vehicle, where it turns round at twice the speed that it may fly.
   bool hit = false;
   EgoPlan plan({});
   for (double x = -6.5; x < -4.5 && !hit; x += 0.02) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Goals at all heights, that stand or move, behind pillars and doors, asked for at all rates: they are reached, and
-// nothing is touched on the way.
+// Goals at all heights, that stand or move, behind pillars and doors, asked for at all rates. They
+// are reached, and the vehicle touches nothing on the way.
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The landing problem as a whole: both ends met exactly at every point the solver can reach, and
-// the one optimum of the convex problem from any start.
+// The landing problem as a whole. Both ends are met exactly at every point the solver can reach.
+// The convex problem has one optimum from any start.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

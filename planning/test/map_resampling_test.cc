@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Files whose cells are not the map's: what is read against the rule, asked of every leaf; and what the flight
-// found of a file.
+// Files whose cells are not the map's. The result of reading is compared with the rule, applied to
+// every leaf. Also what a flight found of a file.
 
 #include <cmath>
 #include <sstream>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The persistent map: nothing is lost when the window moves, nothing that moved on remains, and
-// octomap itself reads and writes the same files.
+// The persistent map loses nothing when the window moves, and keeps nothing that moved on. octomap
+// itself reads and writes the same files.
 
 #include "touchdown/planning/map/persistent_map.h"
 
@@ -31,8 +31,8 @@ OccupancyMapOptions SmallMap() {
   return options;
 }
 
-/// What a camera at `eye` sees that looks along +x at a wall 2.4 m from kEye and a post of 0.4 m width at
-/// `post` = (x, y), from the ground up. NaN: no post.
+/// The image of a camera at `eye` that looks along +x. It sees a wall 2.4 m from kEye and a post of
+/// 0.4 m width at `post` = (x, y), from the ground up. NaN: no post.
 estimation::DepthFrame Scene(const Eigen::Vector2d& post, const Eigen::Vector3d& eye = kEye) {
   estimation::DepthFrame frame;
   frame.p_WC = eye;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Ways around the first obstacle: both sides are tried, the cheaper is flown, and a side once flown
-// is kept; and none of it allocates.
+// is kept. Nothing here allocates.
 
 #include <gtest/gtest.h>
 
@@ -90,8 +90,8 @@ TEST(ReplannerGuides, ASideOnceFlownIsKept) {
   }
 }
 
-// Between two looks for other ways a plan that holds costs one solve and no search, and another step is as a
-// replanner finds it that was given the same memory.
+// Between two looks for other ways a plan that holds costs one solve and no search. A replanner with the same memory
+// makes the same step.
 TEST(ReplannerGuides, APlanThatHoldsCostsOneSolve) {
   Draw draw(43);
   int steps = 0, solves = 0, looks = 0;
@@ -219,8 +219,8 @@ TEST(ReplannerGuides, ANearObstacleGetsFineSegmentsAtOnce) {
     OccupancyMap map = ObservedMap();
     AddPillar({c.near ? -4.0 : 0.0, 0.05}, &map);
     ReplannerOptions options = Options(c.arrival);
-    // With the hull that it has, the vehicle is too near to the pillar to stop, so that no plan is
-    // proven: here it is the segments that count.
+    // With its real hull the vehicle is too near to the pillar to stop, so no plan would be proven.
+    // Only the segments matter here.
     options.hull_radius = 0.0;
     options.limits.body_rate = 100.0;
     Replanner replanner(options, solvers::StandardBackends());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The replanning step over random pads, horizons, fields and both arrival modes: what is accepted
-// is certified, and every way it can fail has its name.
+// The replanning step over random pads, horizons, fields and both arrival modes. What is accepted
+// is certified, and every kind of failure has its name.
 
 #include "touchdown/planning/replan/replanner.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The pair of a curve and its stored stop: what is proven is what is flown, over random maps, with answers
+// The pair of a curve and its stored stop: what is proven is what is flown. Tested over random maps, with answers
 // that are lost, late and refused.
 
 #include "touchdown/planning/certify/stored_stop.h"
@@ -484,8 +484,8 @@ struct Committed {
   bool narrow;
 };
 
-// The promise itself: whatever the map, and whichever answers get lost, the hull of what is flown stays in
-// cells that were observed free when the pair in force was committed.
+// The safety claim: whatever the map, and whichever answers get lost, the hull of what is flown stays in cells that
+// were observed free when the pair in force was committed.
 TEST(StoredStop, TheReferencesHullStaysInWhatWasObservedFree) {
   Draw draw(7);
   int plans = 0, kept = 0, stops = 0, dropped = 0;

@@ -50,7 +50,7 @@ TEST(SweptHull, AgreesWithEveryCellOfEveryBall) {
   EXPECT_GT(refused, 100);
 }
 
-// However slowly and tightly the way turns: a single cell that the hull reaches into anywhere is found.
+// However slowly and tightly the way turns, every cell that the hull reaches into is found.
 TEST(SweptHull, TightTurnsAreSeen) {
   Draw draw(3);
   int looked = 0;
@@ -152,7 +152,7 @@ TEST(SweptHull, WhereAProvenPairHasLedIsNoEscape) {
   EXPECT_TRUE(Look(away, hull).start.occupied);
 }
 
-// A hull of no size, too: it was looked at where it begins and ends.
+// The same for a hull of no size: once it was tested only where it begins and ends.
 TEST(SweptHull, APointDoesNotPassAWallEither) {
   OccupancyMap map(NoGround());
   map.MarkRestFree();
@@ -281,8 +281,8 @@ TEST_F(OverDeck, WhereTheDeckMayNotBeItIsNot) {
 }
 
 TEST_F(OverDeck, APostBesideItForbidsOnlyAboveItsTop) {
-  // Its top is the deck's, in the cell from 0.4 to 0.5 m: what reaches no higher than the deck does
-  // no harm, what fills the next cell does.
+  // Its top is the deck's, in the cell from 0.4 to 0.5 m. What reaches no higher than the deck is
+  // harmless, what fills the next cell is not.
   map_.SetState({3, 0, 3}, CellState::kOccupied);
   EXPECT_TRUE(Lands());
   map_.SetState({3, 0, 5}, CellState::kOccupied);
@@ -313,7 +313,8 @@ TEST_F(OverDeck, WhereTheDeckWasIsNothingElse) {
   EXPECT_FALSE(beside.start.unknown);
 }
 
-// Of a way that was proven before, what is not seen any more is no matter: not even before what blocks.
+// For a way that was proven before, cells not seen any more do not matter, not even before what
+// blocks.
 TEST(SweptHull, WhereUnseenPassesOnlyTheOccupiedBlocks) {
   OccupancyMap map(NoGround());
   const FreeSpace space = SpaceOf(map);

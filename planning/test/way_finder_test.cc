@@ -137,8 +137,8 @@ TEST(WayFinder, KeepsNothingWhereADetourIsNone) {
       Kept(&finder, &budget, Straight({-2.0, 0.0, 0.05}, {0.0, 0.0, 0.05}), space).known());
 }
 
-// The curve enters the front of an obstacle whose back was not seen: where it is free again it is behind the
-// front, and a way that ended there would lead in.
+// The curve enters the front of an obstacle whose back was not seen. Where it is free again it is
+// behind the front, and a way that ended there would lead in.
 TEST(WayFinder, ARunEndsWhereTheCurveIsOnTheWaysSide) {
   OccupancyMap map = Wall();
   for (double x = 0.05; x < 1.5; x += 0.1) {  // the side that the way passes

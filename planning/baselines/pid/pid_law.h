@@ -31,10 +31,10 @@ struct PidError {
   Eigen::Vector2d pad_velocity = Eigen::Vector2d::Zero();  ///< fed forward [m/s]
 };
 
-/// The law: v = v_pad + P e + I integral(e) + D de/dt, cut at the speed limit and taken up with the time
-/// constant `response` under the acceleration limit. Anti-windup: the integral is bounded, and
-/// stands still while either limit cuts or the pad is farther than its zone: else it would be full on
-/// arrival.
+/// The law: v = v_pad + P e + I integral(e) + D de/dt. It is cut at the speed limit and followed
+/// with the time constant `response` under the acceleration limit. Anti-windup: the integral is
+/// bounded. It stands still while either limit cuts or the pad is farther than its zone: it would
+/// be full on arrival.
 class PidLaw {
  public:
   /// Throws std::invalid_argument as Validate does.
@@ -42,9 +42,9 @@ class PidLaw {
 
   void Reset() { integral_.setZero(); }
 
-  /// Acceleration of the reference [m/s^2] over the next dt [s] from its velocity `v` [m/s]; the height
-  /// asks for the vertical velocity `v_z` [m/s]. A reference within the limits stays there if dt is no
-  /// longer than `response`.
+  /// Acceleration of the reference [m/s^2] over the next dt [s] from its velocity `v` [m/s]. `v_z`
+  /// is the vertical velocity that the height law demands [m/s]. A reference within the limits
+  /// stays there if dt is no longer than `response`.
   Eigen::Vector3d Step(const PidError& error, double v_z, const Eigen::Vector3d& v,
                        const Limits& limits, double dt);
 

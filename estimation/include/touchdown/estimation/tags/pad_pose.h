@@ -50,7 +50,8 @@ struct PadPose {
   double corner_sigma = 0.0;  ///< estimated [pixel]
   int tags_used = 0;
   int dropped_id = -1;  ///< id of the tag whose corners did not fit; -1: none
-  /// Two poses of a plane may look alike. Probability of the one not chosen, in [0, 0.5]; `cov` includes it.
+  /// Two poses of a plane may look alike. Probability of the one not chosen, in [0, 0.5]; `cov`
+  /// includes it.
   double other_probability = 0.0;
 };
 
