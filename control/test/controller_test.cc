@@ -215,7 +215,7 @@ TEST(GeometricController, BodyRateFollowsTheReference) {
   EXPECT_LT((output.wrench.moment_B - gyroscopic).norm(), 1e-9);
 }
 
-// Rotors that give more are told less: of the thrust, and of its limit.
+// Rotors that give more than the model get smaller commands, and a smaller limit.
 TEST(GeometricController, AnswersWithTheThrustThatTheRotorsHave) {
   const estimation::VehicleModel model = TestVehicle();
   const auto controller = MakeController("geometric", model);

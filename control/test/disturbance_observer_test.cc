@@ -237,7 +237,7 @@ TEST(DisturbanceObserver, FeetInContactTeachNothing) {
 }
 
 TEST(DisturbanceObserver, SaturationDoesNotWindItUp) {
-  // Asked for more than the rotors have, they give what they have: no push is behind that.
+  // Beyond their limit the rotors give less than commanded: that is no disturbance.
   const estimation::VehicleModel model = Vehicle();
   const Mixer mixer(model);
   DisturbanceObserver observer(model);

@@ -108,7 +108,7 @@ TEST(LandingStateMachine, HalfOfWhatItNeedsIsNoRecovery) {
     lack(mission.in);
     mission.Run(3.0);
     EXPECT_EQ(mission.outputs.mode, MissionMode::kHold);
-    // What it lacked comes for a moment less than is asked for, and goes again.
+    // The missing condition holds for a little less than required, then ends again.
     const MissionInputs lacking = mission.in;
     mission.in = Fine();
     mission.in.t = lacking.t;

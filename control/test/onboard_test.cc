@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What becomes of a measurement, whenever and however often it comes.
+// What happens to a measurement, whenever and however often it comes.
 #include "touchdown/control/onboard/onboard.h"
 
 #include <algorithm>
@@ -493,7 +493,7 @@ TEST(Onboard, AnImageInMillimetresSaysNothing) {
   EXPECT_EQ(onboard.Take(image), Taken::kUsed);
 }
 
-// One pixel that cannot be does not spoil the others.
+// One impossible pixel does not invalidate the others.
 TEST(Onboard, AnImageWithAHotPixelIsUsed) {
   Onboard onboard = Hovering(0.1);
   ToyWorld world;

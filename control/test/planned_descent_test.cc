@@ -128,7 +128,7 @@ TEST(PlannedDescent, BelowTheGateHeightIsNoPlaceToWait) {
   EXPECT_EQ(mission.outputs.guidance, Guidance::kFollowPad);
 }
 
-// What is left of the descent once its end is asked for: until then it goes on at its rate.
+// The rest of the descent once its end is requested: until then it goes on at its rate.
 TEST(PlannedDescent, TurnsSoFarAboveTheGateHeightThatItEndsThere) {
   for (const double sink_rate : {-1.0, 0.0, 0.6, 1.6}) {
     Approach mission;

@@ -56,8 +56,8 @@ TEST(RotorLead, CommandsStayWithinTheLimitsAndDoNotWindUp) {
   int i = 0;
   for (; i < 10; ++i) fly(most, i * kStep);
   EXPECT_GT(given, 1.3 * hover);
-  // Back again the rotor does not fall below what is asked for, as it would for one that takes its cut
-  // commands for granted.
+  // When the demand returns, the rotor does not fall below it. It would, if the lead assumed that
+  // its clipped commands were flown.
   for (; i < 100; ++i) {
     fly(Eigen::Vector4d::Constant(hover), i * kStep);
     EXPECT_GT(given, 0.999 * hover);

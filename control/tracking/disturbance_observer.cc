@@ -31,7 +31,7 @@ constexpr double kHoverStep = 0.002;  // ... in such steps [s]
 
 constexpr double kLongestStep = 0.1;             // a longer gap restarts the observers [s]
 constexpr double kGreatestAcceleration = 100.0;  // quicker changes are jumps of an estimate [m/s^2]
-constexpr double kGreatestSpinUp = 5000.0;       // alike [rad/s^2]
+constexpr double kGreatestSpinUp = 5000.0;       // the same [rad/s^2]
 
 void Require(const char* name, double value, double low, double high) {
   if (value > low && value <= high) return;

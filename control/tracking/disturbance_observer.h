@@ -65,7 +65,7 @@ class DisturbanceObserver {
   estimation::Commands thrusts_;  ///< behind the lag [N]
   estimation::Commands commanded_;
   Eigen::Vector3d v_WB_ = Eigen::Vector3d::Zero();    ///< as the model has it
-  Eigen::Vector3d w_WB_B_ = Eigen::Vector3d::Zero();  ///< alike
+  Eigen::Vector3d w_WB_B_ = Eigen::Vector3d::Zero();  ///< the same
   Disturbance disturbance_;
   Eigen::Vector3d steady_force_W_ = Eigen::Vector3d::Zero();
 };

@@ -8,7 +8,7 @@
 
 namespace touchdown::control {
 
-/// What each actuator is told, in the order of VehicleModel::actuators.
+/// The command of each actuator, in the order of VehicleModel::actuators.
 struct MixerOutput {
   estimation::Commands thrusts;  ///< within the actuators' limits [N], of moments [N m]
   bool saturated = false;        ///< the wrench could not be had in full

@@ -163,7 +163,7 @@ OwnUpdate OwnStateFilter::Insert(const Input& added) {
   }
   const bool full = size_ == static_cast<int>(inputs_.size());
   if (full) {
-    if (place == 1) {  // only the oldest state would be before it, and it has to give way
+    if (place == 1) {  // only the oldest state would be before it, and that is dropped
       ++too_old_;
       return OwnUpdate::kTooOld;
     }

@@ -147,7 +147,7 @@ bool PadFilter::UpdateTag(const Measurement& measurement, Snapshot& state) const
                 options_.turn_rate_prior * options_.turn_rate_prior);
     return true;
   }
-  // Heading read off the motion cannot tell forward from backward; the tag can.
+  // The motion's heading does not distinguish forward from backward; the tag does.
   PadBelief candidate = belief;
   if (std::abs(WrapAngle(measurement.yaw - candidate.mean(3))) > 0.5 * std::numbers::pi)
     TurnAround(candidate);

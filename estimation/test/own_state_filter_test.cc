@@ -43,7 +43,7 @@ TEST(OwnStateFilter, StartsByItselfFromAHover) {
   const VehicleState state = filter.Estimate();
   EXPECT_LT(LogRotation(state.q_WB.conjugate() * q_WB).norm(), 1e-6);
   EXPECT_LT((state.p_WB - Eigen::Vector3d(1.0, 2.0, 3.0)).norm(), 1e-9);
-  // Tilt is known but for what the bias of the accelerometer hides.
+  // Tilt is known except for the part that the accelerometer's bias hides.
   const double tilt = std::sqrt(filter.belief().cov(kAttitudeError, kAttitudeError));
   EXPECT_NEAR(tilt, std::hypot(0.05, 0.05) / kGravity, 1e-3);
 }

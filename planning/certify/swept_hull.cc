@@ -193,7 +193,7 @@ class Tube {
     return {low, last + CellIndex::Ones()};
   }
 
-  /// The box's rows can be asked for whole.
+  /// The box's rows can be read as a whole.
   bool HasRows(const CellBox& box) const {
     return box.high.x() - box.low.x() <= 64 && map_.InWindow(box.low) &&
            map_.InWindow(box.high - CellIndex::Ones());

@@ -188,7 +188,7 @@ ReplanReason PlanAttempt::Refine(const AttemptRequest& request, Posed* posed, Ca
     const ReplanReason reason =
         SolveWithoutPairs(request, request.near_segments, &first_curve_, posed, candidate, result);
     if (reason != ReplanReason::kSolverFailed) return reason;
-    // The coarse ones will have to do.
+    // The coarse ones are used.
     return SolveWithoutPairs(request, request.segments, &first_curve_, posed, candidate, result);
   }
   Pose(request, request.near_segments, posed);  // refused by the coarse problem, if at all

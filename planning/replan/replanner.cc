@@ -265,7 +265,7 @@ SplineState Replanner::Impl::Start(const ReplanInput& input) {
           Eigen::Vector3d::Zero()};
 }
 
-/// The last answer must have taken over before the next is asked for: only one is ever pending.
+/// The last answer must have taken over before the next request: only one is ever pending.
 const char* Replanner::Impl::WrongInState(const ReplanInput& input) const {
   if (!stands_) throw std::invalid_argument("Replanner: a step is asked for before CommitHover");
   if (const char* wrong = planning::WrongInState(input)) return wrong;

@@ -43,8 +43,8 @@ double DijkstraLength(const FreeSpace& space, const CellIndex& from, const CellI
   return std::numeric_limits<double>::infinity();
 }
 
-// Rows of bits must give the same as a test of every cell: also at the window's edges and under
-// levels, and where a row within reach is longer than a word.
+// Rows of bits must give the same as a test of every cell. This includes the window's edges,
+// levels, and rows within reach that are longer than a word.
 TEST(GridSearch, TheNearestFreeCellIsThatOfALookAtEveryCell) {
   Draw draw(5);
   int moved = 0, lost = 0;

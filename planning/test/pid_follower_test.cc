@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 
 constexpr double kPeriod = 1.0 / PidFollower::kRate;
 
-/// A vehicle that flies its reference but for a steady offset, over a pad that drives straight.
+/// A vehicle that flies its reference with a steady offset, over a pad that drives straight.
 class Flight {
  public:
   explicit Flight(double pad_speed, const Vector3d& offset = Vector3d::Zero(), PidGains gains = {})

@@ -46,7 +46,7 @@ TEST(ReplannerBudget, CountsTheSegmentsOfAStepThatSolvesOnce) {
   EXPECT_EQ(result.work, WorkBudget::kSegment * result.curve.segments() * evaluations);
 }
 
-/// What the solves that a log tells of took: each of its curve's segments and its pairs.
+/// The work of a log's solves: each of its curve's segments and its pairs.
 int WorkOfSolves(const ReplanLog& log) {
   int work = 0;
   for (const AttemptLog& attempt : log.attempts) {

@@ -298,7 +298,7 @@ TEST(ReplannerFallback, AStartThatCannotBrakeIsNotTriedLater) {
   OccupancyMap map = ObservedMap();
   for (double y = -6.0; y <= 6.0; y += 0.5) AddPillar({1.5, y}, &map);
   ReplannerOptions options = Options(ArrivalMode::kFixed);
-  options.max_work = 200000;  // a way round is found, and leads nowhere in time
+  options.max_work = 200000;  // a way around is found, but it takes too long
   Replanner replanner(options, solvers::StandardBackends());
   ReplanLog log;
   replanner.set_log(&log);

@@ -159,7 +159,7 @@ TEST(ReplannerGuides, AWallThatTurnsOutLongerMovesTheWay) {
   }
 }
 
-// Where the arrival is too early for the way round, later ones are tried: slower plans, hardly longer ones.
+// If the arrival is too early for the way around, later ones are tried: plans are slower, not longer.
 TEST(ReplannerGuides, AnAttemptThatFailsIsFollowedByASlowerOne) {
   Draw draw(17);
   int followed = 0, held_back = 0, planned = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The last stretch before contact: what was proven to land is not put off, unless the deck is gone.
+// The last stretch before contact: a proven landing is not postponed, unless the deck is gone.
 #include <limits>
 #include <memory>
 
@@ -221,7 +221,7 @@ TEST_F(LastStretch, WhoComesToRestKnowsTheDeckBelow) {
 }
 
 TEST_F(LastStretch, ContactThatNeverComesEndsIt) {
-  // The deck is lower than it is taken to be: the pair is flown to its end, and past it not for ever.
+  // The deck is lower than estimated: the pair is flown to its end, and past it for a limited time.
   // Nothing else is proven meanwhile.
   map_ = OccupancyMap(map_.options());
   const double t_end = landing_.curve.t_end();

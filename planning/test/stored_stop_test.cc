@@ -270,7 +270,7 @@ TEST_F(StopOverDeck, ALandingMeetsTheDeckOnlyWhereItIsToTouchIt) {
       << "cells alone allow it";
 }
 
-// A foot of who leans touches before it is expected: nothing dives close over the deck, to level out there.
+// A leaning vehicle's foot touches early: no plan may dive close to the deck and level there.
 TEST_F(StopOverDeck, CloseOverTheDeckNothingSinksFasterThanItMayTouch) {
   map_.MarkRestFree();
   Draw draw(8);
@@ -329,7 +329,7 @@ TEST_F(StopOverDeck, WhereItsReturnsLieCellsMayBeUnknownNotOccupied) {
   }
 }
 
-// As the pilot asks for it: the feet meet the deck 0.15 s after the plan's end, sinking with 0.3 m/s.
+// As the pilot requests it: the feet meet the deck 0.15 s after the plan's end, sinking with 0.3 m/s.
 TEST_F(StopOverDeck, TheStripLeavesRoomToPressUntilContact) {
   for (int x = -32; x < 32; ++x) {
     for (int y = -32; y < 32; ++y) map_.SetState({x, y, 11}, CellState::kUnknown);
@@ -484,7 +484,7 @@ struct Committed {
   bool narrow;
 };
 
-// The safety claim: whatever the map, and whichever answers get lost, the hull of what is flown stays in cells that
+// The safety claim, whatever the map and whichever answers get lost: the hull of what is flown stays in cells that
 // were observed free when the pair in force was committed.
 TEST(StoredStop, TheReferencesHullStaysInWhatWasObservedFree) {
   Draw draw(7);
@@ -527,7 +527,7 @@ TEST(StoredStop, TheReferencesHullStaysInWhatWasObservedFree) {
                     [&](const CellIndex& cell) { map.SetState(cell, state); });
       }
       const double luck = draw.Uniform(0, 1);
-      if (luck > 0.2) {  // else nobody asks
+      if (luck > 0.2) {  // else there is no request
         const FlatState at = replanner.Reference(t);
         ReplanInput input = Input(at.p_WB, pad, t);
         input.vehicle.v_WB = at.v_WB;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The hull's tube through observed-free cells against the ball looked at cell by cell.
+// The hull's tube through observed-free cells against the ball tested cell by cell.
 
 #include "touchdown/planning/certify/swept_hull.h"
 

@@ -77,7 +77,7 @@ TEST(WayFinder, LeadsPastARunAndTheOtherWayWhenThatIsClosed) {
     farthest = std::min(farthest, p.y() * barrier->side.y());
   }
   EXPECT_LT(farthest, -0.6);
-  // It costs more, and is not looked at where that is forbidden.
+  // It costs more, and is not considered where that is forbidden.
   EXPECT_EQ(finder.LeadPast(curve, run, space, &way, 0, 0.9 * cost), SearchStatus::kNoPath);
   EXPECT_FALSE(way.known());
   finder.Begin(1.0);

@@ -308,7 +308,7 @@ bool OptimalityCheck::Estimate() {
         }
       }
     }
-    // The worst of them, and those that are hardly better.
+    // The worst of them, and those that are nearly as bad.
     const auto wrong = [this](int r) {
       if (side_[r] == Side::kNone || side_[r] == Side::kBoth) return 0.0;
       return -(side_[r] == Side::kUpper ? 1.0 : -1.0) * lambda_[r] * norm_[r];

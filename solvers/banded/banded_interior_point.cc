@@ -50,7 +50,7 @@ constexpr double kStall = 1e-2;
 constexpr int kMostFastSteps = 20;  // they converge in 5 to 15 where they do
 constexpr int kMostCarefulSteps = 200;
 constexpr double kRounding = 1e-8;
-constexpr double kLeastTarget = 0.1;  // of the gap asked for
+constexpr double kLeastTarget = 0.1;  // of the requested gap
 constexpr double kLeastShare = 1e-6;  // of the gap there is, that a step aims at
 constexpr double kLeastShareCurvedRows = 1e-2;
 constexpr double kNearlyMet = 1e-4;
@@ -706,7 +706,7 @@ void BandedInteriorPoint::SetCorrection(bool predicted) {
   }
 }
 
-/// Where nothing curves along the rows, nothing tells how far a step may go.
+/// Without curvature along the rows, nothing limits the length of a step.
 bool BandedInteriorPoint::StepIsTooLong() const {
   return Largest(step_) > kLongestStep * PointSize();
 }

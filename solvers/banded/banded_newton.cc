@@ -83,7 +83,7 @@ SolveStatus BandedNewton::Run(const View& view, const double* start, const Toler
   return evaluator->stop_status();
 }
 
-/// Where hardly anything curves, nothing tells how far a step may go.
+/// Without curvature, nothing limits the length of a step.
 double BandedNewton::Shorten() {
   const double share = kNewtonLongestStep * (1.0 + Largest(y_)) / Largest(step_);
   if (share >= 1.0) return 1.0;

@@ -182,7 +182,7 @@ class ProgressWatch : public ceres::IterationCallback {
   int told_evaluations_;
 };
 
-/// How often a free interval may be held at a bound or let go.
+/// How often a free interval may be held at a bound or released.
 constexpr int kMostRounds = 4;
 
 class CeresSolver : public SolverBackend {
@@ -210,7 +210,7 @@ class CeresSolver : public SolverBackend {
   void DoSolve(const View& view, const WarmStart& warm, const Stop& /*stop*/, Evaluator* evaluator,
                SolverResult* result) override {
     std::copy(warm.y.data(), warm.y.data() + warm.y.size(), y_.begin());
-    // The first evaluation also tells which windows are active now.
+    // The first evaluation also shows which windows are active now.
     if (!evaluator->Evaluate(y_.data(), {.gradient = true, .residual = true})) {
       result->status = SolveStatus::kEvaluationFailed;
       return;

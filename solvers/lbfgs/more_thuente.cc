@@ -142,7 +142,7 @@ LineSearchState MoreThuente::Observe(double value, double slope) {
   return state_;
 }
 
-/// One update of the interval and the next trial step; false where rounding spoilt the values.
+/// One update of the interval and the next trial step; false where rounding corrupted the values.
 bool MoreThuente::Update(Point* best, Point* other, const Point& t) {
   if (bracketed_) {
     const double low = std::min(best->step, other->step), high = std::max(best->step, other->step);

@@ -311,7 +311,7 @@ class NloptSolver : public SolverBackend {
   std::vector<double> lower_, upper_;  // infinite where NLopt keeps to none
   std::vector<Side> equalities_, inequalities_;
   int failures_ = 0;
-  bool lost_ = false;  // a point that was asked for is not finite
+  bool lost_ = false;  // a requested point is not finite
   int repeats_ = 0;
   double first_cost_ = 0.0;
   double improvement_ = HUGE_VAL;  // of the cost, by the last better point

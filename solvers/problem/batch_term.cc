@@ -190,7 +190,7 @@ class BatchTerm::Differences {
     }
   }
 
-  /// Slopes that a copy which cannot be evaluated has spoilt: from above, else from below.
+  /// Slopes that lack a copy which cannot be evaluated: from above, else from below.
   void AskTheOtherSide(TermBlock* block) {
     constexpr int kCopies = static_cast<int>(kSideWeights.size());
     for (const double side : {1.0, -1.0}) {

@@ -44,7 +44,7 @@ class Chain {
   std::vector<double> targets_;
 };
 
-/// |q|^2 <= r^2 for every block: the norm rows of a landing in small.
+/// |q|^2 <= r^2 for every block: a small model of a landing's norm rows.
 class Ball {
  public:
   static constexpr int kBlockSize = 3, kWindow = 1, kOutputs = 1;

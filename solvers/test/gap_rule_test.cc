@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One stop rule for all backends: each ends as near to the optimum as was asked for, and not much nearer.
+// One stop rule for all backends: each ends as near to the optimum as requested, and not much nearer.
 
 #include "touchdown/solvers/backend/gap_rule.h"
 

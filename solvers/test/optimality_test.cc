@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The check of optimality, and what becomes of claims that it does not confirm.
+// The check of optimality, and the status of claims that it does not confirm.
 
 #include "touchdown/solvers/backend/optimality.h"
 

@@ -13,7 +13,7 @@ struct PidGains {
   double proportional = 2.0;  ///< horizontal, of the position error [1/s]
   double integral = 0.2;      ///< of its integral [1/s^2]
   double derivative = 0.1;    ///< of its rate [-]
-  /// The integral adds no more: what an error of 0.25 m asks for [m/s].
+  /// The integral adds no more: the velocity of an error of 0.25 m [m/s].
   double integral_limit = 0.5;
   /// Farther from the pad the integral stands still [m]: the distance at which the mission descends.
   double integral_zone = 0.5;
@@ -24,7 +24,7 @@ struct PidGains {
 /// Throws std::invalid_argument naming the first gain out of its range.
 void Validate(const PidGains& gains);
 
-/// What the law is told of the pad, horizontally, all in W.
+/// The law's input on the pad, horizontally, all in W.
 struct PidError {
   Eigen::Vector2d position = Eigen::Vector2d::Zero();      ///< pad less vehicle [m]
   Eigen::Vector2d velocity = Eigen::Vector2d::Zero();      ///< pad less vehicle [m/s]

@@ -27,7 +27,7 @@
 //                                                     planned: arrival_plan_timeout)
 //   landing        go_around       no_contact         committed for over commit_timeout, or the
 //                                                     plan's contact overdue by arrival_timeout, or
-//                                                     put off for so long
+//                                                     postponed for so long
 //   landing        go_around       own_state_lost     own state not usable for over own_timeout
 //   go_around      tracking        climb_complete     at the follow height, pad converged
 //   go_around      tracking        climb_timeout      climbing took too long, pad converged

@@ -85,7 +85,7 @@ class Onboard {
   Taken Take(const estimation::PadGpsFix& fix);
   Taken Take(const estimation::PadSighting& sighting);
   Taken Take(const estimation::PadImage& image);
-  /// Obstacles. Returns from the pad are told apart.
+  /// Obstacles. Returns from the pad are distinguished.
   Taken Take(const estimation::DepthImage& image);
   Taken Take(const estimation::FootForce& force);
 
@@ -94,8 +94,8 @@ class Onboard {
 
   /// The flight begins, once: the vehicle hovers at the time t [s], in [0, 1e10], with these rotor
   /// thrusts [N]. States that are later than t, by more than a moment, are forgotten.
-  /// @throws std::invalid_argument if its state at t is not known then or not below the ceiling, if
-  /// the flight has begun, or for a time or a thrust out of its range.
+  /// @throws std::invalid_argument if its state at t is unknown or not below the ceiling, if the
+  /// flight has begun, or if a time or thrust is out of range.
   void Begin(double t, const estimation::Commands& thrusts);
 
   /// The set-point for the time t [s], which is later than all before; if it is not, or is not finite, the last one

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What an Onboard is told before it flies.
+// The options of an Onboard, set before it flies.
 #pragma once
 
 #include <memory>
@@ -74,7 +74,7 @@ struct OnboardOptions {
   estimation::PadFilterOptions pad;
   planning::OccupancyMapOptions map;
   double start_free =
-      0.8;  ///< the space around the start is taken for free, so far, and 0.45 m from the hull [m]
+      0.8;  ///< radius around the start that counts as free, at least 0.45 m from the hull [m]
 };
 
 /// What an Onboard is made of, besides.

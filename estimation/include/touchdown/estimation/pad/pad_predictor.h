@@ -9,7 +9,7 @@
 
 namespace touchdown::estimation {
 
-/// What is known of the pad when a plan is asked for.
+/// What is known of the pad when a plan is requested.
 struct PadKnowledge {
   PadBelief belief;
   double height = 0.0;  ///< of the deck in W [m]

@@ -106,8 +106,8 @@ class OccupancyMap {
   /// @throws std::invalid_argument if the frame has not width x height depths.
   void Integrate(const estimation::DepthFrame& frame, const PadOutline& pad);
 
-  /// Settles the doubtful cells, now that the pad is known: `outline_at(t)` [s] gives a PadOutline. A cell becomes
-  /// unknown if it explains every return of the cell at its time, otherwise occupied.
+  /// Settles the doubtful cells, now that the pad is known: `outline_at(t)` [s] gives a PadOutline. If the outline
+  /// explains every return of a cell at its time, the cell becomes unknown, otherwise occupied.
   template <class OutlineAt>
   void ExplainDoubts(OutlineAt&& outline_at);
 

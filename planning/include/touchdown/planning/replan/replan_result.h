@@ -158,7 +158,7 @@ struct ReplanResult : FlightPair {
   /// With kInvalidInput the part of the input that is not valid. For the EGO-Planner baseline its name of its plan
   /// call's outcome. Else empty.
   std::string_view detail;
-  bool ends_in_contact = false;  ///< what is asked for is a plan that does
+  bool ends_in_contact = false;  ///< the requested plan does
   bool idle = false;             ///< the planner had nothing to do: there is no answer
   bool committed = false;        ///< a pair was proven in this step and takes over at t_start
   bool from_odometry = false;    ///< started at the vehicle, not at the old plan

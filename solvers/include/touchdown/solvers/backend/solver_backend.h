@@ -28,7 +28,7 @@ struct Capabilities {
   bool needs_residuals = false;  ///< takes only costs that are sums of squares
 };
 
-/// A solve as it is asked for, before it is made. Valid during the call of a listener.
+/// A requested solve, before it is made. Valid during the call of a listener.
 struct SolveRequest {
   const View& view;
   const WarmStart& start;

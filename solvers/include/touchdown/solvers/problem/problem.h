@@ -77,7 +77,7 @@ class Problem {
   /// where there is none. For backends that keep them without rows (Capabilities). Throws
   /// std::invalid_argument on another size, or where they are not lower <= upper.
   void SetBounds(std::vector<double> lower, std::vector<double> upper);
-  /// Has bounds but for the interval's.
+  /// Has bounds other than the interval's.
   bool bounded() const { return !lower_.empty(); }
   double lower(int i) const { return bounded() ? lower_[i] : -kInfinity; }
   double upper(int i) const { return bounded() ? upper_[i] : kInfinity; }
