@@ -16,7 +16,7 @@ struct PadAlignmentOptions {
   double blur = 1.2;         ///< side of the square that one pixel sees at least [pixel], in [1, 2]
   int max_pixels = 8000;     ///< a pad that covers more is left alone: its corners are sharp enough
   double correlation = 0.9;  ///< of image and model, demanded, in [0, 1]
-  double neighbors = 1.0;  ///< one of so many pixels with the same error counts, >= 1
+  double neighbors = 1.0;    ///< one of so many pixels with the same error counts, >= 1
 };
 
 /// Makes the pose of a pad that is small in the image more exact. It uses every pixel of the
