@@ -234,7 +234,7 @@ TEST(GeometricController, AnswersWithTheThrustThatTheRotorsHave) {
   }
 }
 
-// Rotors that have no thrust to spare leave the heading behind; the thrust axis must not turn with that.
+// Rotors at their limit cannot follow the heading; the thrust axis must not turn because of that.
 TEST(GeometricController, AHeadingFarOffDoesNotTurnTheThrustAxisAside) {
   const auto model = TestVehicle();
   const auto controller = MakeController("geometric", model);

@@ -221,7 +221,7 @@ TEST(PlannedDescent, AShortLossOfTheTagsIsBridged) {
   EXPECT_TRUE(mission.outputs.committed);
 }
 
-// Each way to lose a landing that has been decided on, at once or after its patience.
+// Each way to lose a landing that has been decided on, at once or after its timeout.
 struct Loss {
   const char* name;
   double when;  ///< before contact [s]
@@ -350,7 +350,7 @@ TEST(PlannedDescent, FeetThatTouchAreNotPulledOffAgain) {
   EXPECT_EQ(ModeOf(mission), MissionMode::kLanding);
 }
 
-// However high it was given up, or low: the pad's surface is no place to climb from below.
+// At whatever height it was given up: no climb begins below the pad's surface.
 TEST(PlannedDescent, AClimbBeginsBetweenDeckAndFollowHeight) {
   for (const double height : {-0.2, 2.5}) {
     Approach mission;

@@ -62,7 +62,8 @@ TEST_P(OwnConsistency, NeesInsideItsBand) {
   }
 }
 
-// From a hover the start is found, not drawn: tilt from the force, so that it errs with the bias.
+// From a hover the start is found, not drawn: tilt comes from the force, so its error follows the
+// bias.
 TEST(OwnStateFilter, StartFromAHoverIsConsistent) {
   double tilt_and_bias = 0.0;
   double state = 0.0;

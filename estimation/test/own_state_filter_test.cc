@@ -49,7 +49,7 @@ TEST(OwnStateFilter, StartsByItselfFromAHover) {
 }
 
 TEST(OwnStateFilter, FindsTheBiases) {
-  // Turned and accelerated, a bias shows within 20 s to what its walk of that time leaves.
+  // With turns and accelerations, a bias is known within 20 s up to its random walk of that time.
   double accelerometer2 = 0.0;
   double gyro2 = 0.0;
   const int runs = 20;

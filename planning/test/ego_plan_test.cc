@@ -87,7 +87,7 @@ TEST(EgoPlan, EveryDeadEndHasItsName) {
 }
 
 TEST(EgoPlan, ReboundsAndRestartsEnd) {
-  // A slot narrower than the clearance on both sides: pairs of both walls fight.
+  // A slot narrower than the clearance on both sides: pairs of both walls contradict each other.
   CubeGrid slot = EmptyGrid();
   AddBox({-2.2, -0.6, 0}, {-0.6, -0.1, 3}, &slot);
   AddBox({-2.2, 0.2, 0}, {-0.6, 0.8, 3}, &slot);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A* against Dijkstra, and what stops it.
+// A* against Dijkstra, and the limits that stop it.
 
 #include "planning/search/grid_search.h"
 

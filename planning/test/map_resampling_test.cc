@@ -58,7 +58,7 @@ std::vector<Leaf> LeavesOf(const octomap::OcTree& tree) {
   return leaves;
 }
 
-/// The rule, by asking every leaf.
+/// The rule, applied to every leaf.
 CellState StateOf(const std::vector<Leaf>& leaves, const CellIndex& cell, double side) {
   const Eigen::Array3d low = side * cell.cast<double>().array(), high = low + side;
   const Eigen::Array3d middle = low + 0.5 * side;

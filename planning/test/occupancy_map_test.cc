@@ -448,7 +448,7 @@ TEST(OccupancyMap, RefusesAFrameWithTooFewDepths) {
   EXPECT_THROW(map.Integrate(frame, {}), std::invalid_argument);
 }
 
-// What no camera reports frees nothing: behind it may be anything.
+// An impossible depth frees nothing: anything may be behind it.
 TEST(OccupancyMap, APixelThatIsNoneSaysNothing) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   for (const float depth : {0.0F, -1.0F, 4.5F, 2000.0F, -kInfinity, std::nanf("")}) {
@@ -533,7 +533,7 @@ TEST(OccupancyMap, RefusesBadOptions) {
   EXPECT_THROW(OccupancyMap{options}, std::invalid_argument);
 }
 
-// A camera that is none must not reach beyond the grid.
+// An impossible camera must not reach beyond the grid.
 TEST(OccupancyMap, AnImpossibleCameraSaysNothing) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   const std::function<void(estimation::DepthFrame*)> slips[] = {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The PID baseline as a planner: what it leads to on a pad that drives straight, at rest, late and lost.
+// The PID baseline as a planner: its flights with a pad that drives straight, at rest, late and lost.
 #include "planning/baselines/pid/pid_follower.h"
 
 #include <algorithm>

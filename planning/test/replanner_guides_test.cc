@@ -51,14 +51,14 @@ TEST(ReplannerGuides, BothSidesOfAnObstacleAreTriedAndTheCheaperWins) {
       side[guides - 1] = SideOf(result.curve) - y;
       cost[guides - 1] = result.solver.cost;
       for (const solvers::TermCost& term : result.solver.cost_by_term) {
-        // Not the terms whose weights are pressed from solve to solve.
+        // Without the terms whose weights grow from solve to solve.
         const TermRegistry terms = StandardTerms();
         const TermEntry& entry = FindTerm(terms, term.name);
         if (entry.is_clearance || entry.is_limit) cost[guides - 1] -= term.cost;
       }
     }
     chosen_second += side[0] * side[1] < 0.0;
-    // A second way may also have spared a longer arrival.
+    // A second way may also have avoided a later arrival.
     EXPECT_LE(duration[1], duration[0]);
     if (duration[0] == duration[1]) {
       EXPECT_LE(cost[1], cost[0]);

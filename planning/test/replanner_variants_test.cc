@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What studies switch off (the pad's velocity at the end, the warm start), and answers that come late.
+// Options that studies switch off (end velocity, warm start), and answers that come late.
 #include <memory>
 #include <vector>
 

@@ -59,7 +59,7 @@ TEST(StoredStop, NoProvenPairMeetsWhatIsNotObservedFree) {
     leaves += proof.start.leaves();
     EXPECT_FALSE(proof.contact);
     EXPECT_EQ(pair.t_stop, t_handover);
-    // The two are one way: no jump in position, velocity or acceleration.
+    // Curve and stop are one trajectory: no jump in position, velocity or acceleration.
     const FlatState before = pair.curve.EvaluateOnward(t_handover), after = pair.At(t_handover);
     EXPECT_LT((before.p_WB - after.p_WB).norm(), 1e-9);
     EXPECT_LT((before.v_WB - after.v_WB).norm(), 1e-9);
@@ -196,7 +196,7 @@ TEST_F(StopOverDeck, WhereItCannotClimbALandingGoesOnToContact) {
   EXPECT_TRUE(lands.proven);
   EXPECT_TRUE(lands.contact);
   EXPECT_EQ(pair.t_stop, std::numeric_limits<double>::infinity());
-  // Not past a post beside the deck that stands 0.1 m above its top; one as high as the deck is no matter.
+  // Not past a post beside the deck that stands 0.1 m above its top; one as high as the deck is allowed.
   map_.SetState({5, 0, 3}, CellState::kOccupied);
   EXPECT_FALSE(Prove(0.1, 0.4, PairEnd::kRest, &pair).proven);
   hull_.deck_half_size = 0.3;  // so that the hull's ball reaches beside it
@@ -386,7 +386,7 @@ TEST(StoredStop, TheCertifiedStopIsFlownWhereNoNewerPlanComes) {
   state.current = state.next = pair;
   state.planned = true;
   replanner.Restore(state);
-  // Every question is refused: nothing is decided, and the vehicle stands where it was proven to.
+  // Every request is refused: nothing is decided, and the vehicle stands where the pair ends.
   for (int step = 1; step < 30; ++step) {
     const double t = 0.05 * step;
     ReplanInput input;
@@ -439,7 +439,7 @@ TEST_F(InFlight, AnAnswerThatComesAfterTheStopHasBegunIsDropped) {
   ASSERT_TRUE(std::isfinite(before.t_stop));
   ASSERT_EQ(Ask(1.1), ReplanStatus::kPlanned);
   replanner_.TakeOverAt(before.t_stop + 0.05);
-  // What it says now is what is flown.
+  // The result now is what is flown.
   EXPECT_FALSE(result_->committed);
   EXPECT_EQ(result_->status, ReplanStatus::kBraking);
   EXPECT_EQ(result_->curve.control_points(), before.stop.control_points());

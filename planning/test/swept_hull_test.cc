@@ -147,7 +147,7 @@ TEST(SweptHull, WhereAProvenPairHasLedIsNoEscape) {
   EXPECT_TRUE(leaves.proven);
   EXPECT_FALSE(leaves.start.leaves());
   EXPECT_TRUE(leaves.start.narrow);
-  // A hit is new, whatever was proven.
+  // A hit is new, whatever was proven before.
   map.SetState(CellIndex(-3, 0, 0), CellState::kOccupied);
   EXPECT_TRUE(Look(away, hull).start.occupied);
 }
@@ -294,7 +294,7 @@ TEST_F(OverDeck, WhatStandsOnItForbids) {
   EXPECT_FALSE(Lands());
 }
 
-// A vehicle that rises from above a deck that drives on leaves nothing but where the deck was.
+// A vehicle that rises while the deck drives on only leaves cells of the deck's old place.
 TEST_F(OverDeck, WhereTheDeckWasIsNothingElse) {
   const ArcPad drives({0, 0, 0.45}, 0.8, 0.0, 0.0);
   const FreeSpace space = SpaceOf(map_);

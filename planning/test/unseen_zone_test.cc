@@ -46,7 +46,7 @@ TEST_P(Zone, IsWhereTheHullWouldTouchWhatIsUnseen) {
     const CellIndex around = CellIndex::Constant(kept + 2);
     ForEachCell({centre - around, centre + around + CellIndex::Ones()}, [&](const CellIndex& cell) {
       const bool near = (cell - centre).cwiseAbs().maxCoeff() <= kept;
-      // Where the hull is already it may be, however the lattice rounds that.
+      // Where the hull is already it may be, whatever the rounding of the lattice.
       const bool wanted = near && cell != centre && ClosedByHand(map, start, cell);
       ASSERT_EQ(zone->Holds(cell), wanted) << trial << " at " << (cell - centre).transpose();
       (wanted ? closed : open) += 1;

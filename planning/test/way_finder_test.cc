@@ -154,7 +154,7 @@ TEST(WayFinder, ARunEndsWhereTheCurveIsOnTheWaysSide) {
   EndBeside(way, curve, space, 0.5, &run);
   EXPECT_GT(curve.Evaluate(run.t_out).p_WB.x(), 1.5);
   EXPECT_LE(run.t_out, curve.t_end());
-  // Nothing is between: it ends where it ended.
+  // Nothing is between: the end stays.
   const OccupancyMap plain = Wall();
   BlockedRun short_run = OnlyRun(curve, SpaceOf(plain));
   const double t_out = short_run.t_out;
