@@ -339,7 +339,7 @@ Sweep SweepHull(const UniformBspline& curve, double t_from, double t_to, const H
   Sweep sweep;
   Tube tube(hull, start);
   Path path(curve), ahead(curve);
-  // If the hull is thinner than the room, two balls of the room contain it.
+  // A hull thinner than kSweepRoom counts as half of it: two such balls contain as much at least.
   const double radius = std::max(hull.radius(), 0.5 * kSweepRoom);
   Stretch stretch(radius);
   Eigen::Vector3d before = start.p_W;

@@ -333,7 +333,7 @@ ReplanReason PlanAttempt::Follow(const AttemptRequest& request, const TimedWay& 
     const ReplanReason reason = Solve(request, posed, candidate, result);
     if (reason != ReplanReason::kNone) return reason;
     if (candidate->pair.curve.duration() > latest) return ReplanReason::kCollisionRemains;
-    // A start that is blocked alone is left to the certificate: it may be an escape.
+    // If only the start is blocked, the certificate decides: it may be an escape.
     const auto& runs = candidate->blocked;
     const bool only_start = runs.size() == 1 && runs.front().at_start;
     if (runs.empty() || only_start) {

@@ -4,7 +4,7 @@
 namespace touchdown::planning {
 
 /// The remaining work of a step, counted: no clock decides what is planned. The costs have the
-/// ratio of measured times, which makes these nearly proportional to the work. Of 250 slow steps of
+/// ratio of measured times, so a step's time is nearly proportional to its work. Of 250 slow steps of
 /// hostile flights the 99 % quantile of time over work is 1.5 times the median
 /// (docs/results/replan/tables.md).
 class WorkBudget {

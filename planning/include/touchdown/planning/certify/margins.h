@@ -16,9 +16,8 @@ struct Margins {
 };
 
 /// Margins from the vehicle's own estimates: one standard deviation of its position [m] and of its
-/// attitude [rad], and its recent distance from its reference [m]. The last is the steady force on
-/// it over its mass [m/s^2], of which only the horizontal part counts: wind that pushes comes in
-/// gusts.
+/// attitude [rad], and its recent distance from its reference [m]. `pull_W` is the steady force on
+/// it over its mass [m/s^2]. Only its horizontal part counts: wind that pushes comes in gusts.
 Margins MarginsOf(double sigma_position, double sigma_attitude, double recent_tracking,
                   const Eigen::Vector3d& pull_W) noexcept;
 
