@@ -484,7 +484,7 @@ struct Committed {
   bool narrow;
 };
 
-// The safety claim, whatever the map and whichever answers get lost: the hull of what is flown stays in cells that
+// The safety claim, whatever the map and whichever answers get lost. The hull of what is flown stays in cells that
 // were observed free when the pair in force was committed.
 TEST(StoredStop, TheReferencesHullStaysInWhatWasObservedFree) {
   Draw draw(7);
