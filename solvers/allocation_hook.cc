@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The library touchdown_allocations: counts allocations by standing in front of the C library's allocator, where
-// operator new, Eigen and other libraries all end. Programs of ours are not linked with it: a program that wants to count
-// preloads it, the tests link it. Needs glibc's own names for its allocator.
+// The library touchdown_allocations counts allocations in front of the C library's allocator, where operator new,
+// Eigen and other libraries all end. Our programs are not linked with it: a program that wants to count preloads it,
+// the tests link it. Needs glibc's own names for its allocator.
 
 #include <cerrno>
 #include <cstddef>
@@ -10,7 +10,7 @@
 
 namespace {
 
-// Its place is fixed when the program starts: else to find it could allocate.
+// Its place is fixed when the program starts. Otherwise finding it could allocate.
 __attribute__((tls_model("initial-exec"))) thread_local long allocations = 0;
 
 }  // namespace

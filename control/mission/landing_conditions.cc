@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Gate, corridor, cone and contact: each a bound on what is estimated now, the gate also on what is predicted
-// for the contact.
+// Gate, corridor, cone and contact. Each is a bound on present estimates, the gate also on predictions for the
+// contact.
 
 #include "control/mission/landing_conditions.h"
 
@@ -38,7 +38,7 @@ Conditions Assess(const MissionState& s, const MissionInputs& in,
                       !std::isnan(in.tag_age) && !std::isnan(in.plan_failed_for) &&
                       !std::isnan(in.arrival_in);
   now.pad_good = now.numbers_valid && in.own_usable && in.pad_available && in.pad_converged;
-  // Dead reckoning only gets worse: one that lasts is not waited out while tags show the pad.
+  // Dead reckoning only gets worse: if it lasts, the gate does not wait for its end.
   const bool own_good =
       in.own_usable && (in.own_fresh || LastedLonger(s.own_stale_since, s.t, p.own_patience));
   const bool seen = in.pad_sigma <= p.gate_sigma && in.tag_age <= p.gate_tag_age;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the landing mission makes of one step's inputs; of landing_state_machine.cc and its transitions alone.
+// The conditions that the landing mission derives from one step's inputs. Private to landing_state_machine.cc and its
+// transitions.
 #pragma once
 
 #include <limits>
@@ -24,7 +25,7 @@ struct Conditions {
       will_touch;  ///< a foot is so low over a deck that is surely there that a climb comes too late
 };
 
-/// The height that is lost until the present descent is ended by what takes hold after `time` [s] [m].
+/// Height lost until the present descent has ended [m]; what ends it takes effect after `time` [s].
 double HeightLost(const MissionInputs& inputs, const MissionParameters& parameters,
                   double time) noexcept;
 

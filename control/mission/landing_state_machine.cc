@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The landing mission (the paper's section 2.2, figure 2) with hold, go-around and emergency stop.
-// Each step: update how long the conditions have lasted, decide at most one transition (contact
-// first, then emergency, invalid input, and the mode's own), then move the commanded foot height
-// by one step of a rate- and acceleration-limited profile. The height never jumps, whatever the
-// transition, because only its target changes; while a plan leads to the deck it is the vehicle's own.
+// Each step first updates how long the conditions have lasted. It then decides at most one
+// transition: contact first, then emergency, invalid input, and the mode's own. Last it moves the
+// commanded foot height by one step of a rate- and acceleration-limited profile. Only the height's
+// target changes in a transition, so the height never jumps. While a plan leads to the deck, it is
+// the vehicle's own height.
 
 #include "touchdown/control/mission/landing_state_machine.h"
 
@@ -30,8 +31,9 @@ void UpdateTimers(const MissionInputs& in, const MissionParameters& p, const Con
                   double dt, MissionState& state) {
   const double t = state.t;
   Track(now.pad_good, t, state.converged_since);
-  // Without numbers the invalid-input timer decides, not the pad's. Without an own state the pad's is
-  // neither begun nor ended, so that a state that comes and goes does not start it anew each time.
+  // With invalid numbers the invalid-input timer decides, not the pad's. Without an own state the
+  // pad's timer is neither started nor stopped, so that an intermittent state does not restart it
+  // each time.
   if (in.own_usable) Track(now.numbers_valid && !now.pad_good, t, state.pad_missing_since);
   Track(!in.own_usable, t, state.own_lost_since);
   Track(now.pad_good && in.has_plan && in.plan_failed_for <= 0.0, t, state.recovered_since);
@@ -89,7 +91,8 @@ DescentHold MoveHeight(const MissionInputs& in, const MissionParameters& p, cons
       target = rest;
       hold = DescentHold::kCorridor;
     }
-    // A vehicle that had to stop would dive after a command that went on, and meet the deck hard.
+    // If the command went on, a vehicle that had to stop would dive after it and meet the deck
+    // hard.
     if (hold == DescentHold::kNone && !in.at_goal && now.numbers_valid &&
         in.height > s.foot_height + p.height_lag) {
       target = rest;

@@ -19,7 +19,7 @@ Transition FromArriving(const MissionState& s, const MissionInputs& in, const Co
   if (!touches && in.plan_failed_for > p.arrival_plan_timeout) {
     return {MissionMode::kGoAround, TransitionReason::kPlanFailed};
   }
-  // Contact that every new plan puts off would never be overdue.
+  // If every new plan postponed contact, it would never be overdue.
   if (LastedLonger(s.mode_since, s.t, p.decide_time + p.arrival_timeout)) {
     return {MissionMode::kGoAround, TransitionReason::kNoContact};
   }
@@ -46,7 +46,7 @@ Transition FromLanding(const MissionState& s, const MissionInputs& in, const Con
   if (LastedLonger(s.own_lost_since, s.t, p.own_timeout)) {
     return {MissionMode::kGoAround, TransitionReason::kOwnStateLost};
   }
-  // Feet that touch are not pulled off again, and those that will touch anyway had better stay.
+  // Feet that touch are not pulled off again, and feet that will touch anyway stay.
   const bool touches = s.contact_since != kNever || now.will_touch;
   if (!touches && TooFarOff(s, in, now, p)) {
     return {MissionMode::kGoAround, TransitionReason::kErrorTooLarge};
@@ -105,7 +105,7 @@ Transition FromTracking(const MissionState& s, const MissionInputs& in, const Co
 Transition FromGoAround(const MissionState& s, const MissionInputs& in, const Conditions& now,
                         const MissionParameters& p) {
   const double enough = p.follow_height - p.climb_tolerance;
-  // The height above a lost pad means nothing: the command alone tells when the climb is done.
+  // The height above a lost pad means nothing: only the command says when the climb is done.
   const bool high = s.foot_height >= enough && (in.height >= enough || !now.pad_good);
   const bool timeout = LastedLonger(s.mode_since, s.t, p.climb_timeout);
   if (!high && !timeout) return {s.mode, TransitionReason::kNone};

@@ -14,8 +14,8 @@ namespace touchdown::control {
 namespace {
 
 constexpr double kTiltReserve_deg = 10.0;  // beyond plans: stops in wind count on it ...
-// ... and beyond that, for gusts alone. In gusts of 15 m/s a vehicle 20 % too light is up to 0.9 m off
-// its reference without it and 0.2 m with it; more brings no more.
+// ... and beyond that, for gusts alone. In gusts of 15 m/s a vehicle 20 % too light is up to 0.9 m
+// off its reference without it and 0.2 m with it. A larger reserve does not help.
 constexpr double kGustReserve_deg = 10.0;
 constexpr double kSteepest = 1.3;             // [rad]
 constexpr double kFeetAboveGround = 0.3;      // away from the pad [m]

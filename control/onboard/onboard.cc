@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Senses make of measurements what is known, the pilot decides by it: mission, plan, control, each at its rate.
+// Senses turn measurements into estimates, and the pilot decides by them: mission, plan, control, each at its rate.
 #include "touchdown/control/onboard/onboard.h"
 
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A given state is kept in a ring, so that what comes late can be told where the vehicle was. Between two of
-// them, and for a moment after the newest, it is carried on with constant velocity and turn rate.
+// Given states are kept in a ring, so that the vehicle's position is known for late measurements. Between two of
+// them, and for a moment after the newest, the state has constant velocity and turn rate.
 #include "control/onboard/own_state.h"
 
 #include <algorithm>
@@ -21,7 +21,7 @@ constexpr double kAhead = 0.1;         // of the time that was advanced to: no m
 
 constexpr double kLargest = 1e10;  // [m], [m/s], [rad/s]: no simulator goes on beyond it
 
-// Written so that a number that is none fails each.
+// Written so that NaN fails each.
 bool IsPossible(const VehicleState& s) {
   const auto within = [](const Eigen::Vector3d& a) { return (a.array().abs() < kLargest).all(); };
   return IsTime(s.t) && within(s.p_WB) && within(s.v_WB) && within(s.w_WB_B) &&

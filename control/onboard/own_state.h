@@ -19,7 +19,7 @@ class OwnState {
   /// @throws std::invalid_argument as OwnStateFilter.
   explicit OwnState(const OnboardOptions& options);
 
-  /// A given state. Older ones than the newest only fill in how it was.
+  /// A given state. States older than the newest only complete the history.
   Taken Take(const estimation::VehicleState& state);
   Taken Take(const estimation::ImuSample& sample);
   Taken Take(const estimation::OwnPositionFix& fix);
@@ -31,8 +31,8 @@ class OwnState {
   /// It can be asked for a state.
   bool known() const;
 
-  /// Brings now() to the time t [s]. Given states from later than that, by more than a moment, are forgotten: before
-  /// the first call the time was not known.
+  /// Brings now() to the time t [s]. Given states that are later, by more than a moment, are
+  /// forgotten: before the first call the time was not known.
   void Advance(double t);
   /// The state by the newest measurement, or at the time of Advance if that is later.
   const estimation::VehicleState& now() const { return now_; }
@@ -43,8 +43,8 @@ class OwnState {
   bool Reaches(double t) const;
 
   estimation::OwnStatus Status(double t) const;
-  /// Largest 1 sigma: of the position in W in the plane and in any direction [m], of the attitude [rad]; 0 where
-  /// the state is given.
+  /// Largest 1 sigma: of the position in W, in the horizontal plane and in any direction [m], and
+  /// of the attitude [rad]. 0 where the state is given.
   double HorizontalSigma() const;
   double PositionSigma() const;
   double AttitudeSigma() const;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// An image without the pad takes the finder longest, and far from the pad all are such. So an image is searched only if
-// a ball about the expected pad reaches into the camera's pyramid of view, near enough for a tag to be read. The ball has
-// room for the sheet, for five standard deviations of the expectation and for half a metre. The expectation may be wrong
-// without knowing it: every tenth image is searched all the same.
+// The finder takes longest for an image without the pad, and far from the pad all images are such.
+// So an image is searched only if a ball about the expected pad reaches into the camera's pyramid
+// of view, near enough for a tag to be read. The ball has room for the sheet, for five standard
+// deviations of the expectation and for half a metre. The expectation may be wrong without any sign
+// of it, so every tenth image is searched anyway.
 #include "control/onboard/pad_search.h"
 
 #include <algorithm>

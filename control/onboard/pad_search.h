@@ -15,12 +15,12 @@ namespace touchdown::control {
 /// Finds the pad in the images of the camera that looks for it. Belongs to one thread.
 class PadSearch {
  public:
-  /// @param thrifty do not search images in which the expected pad cannot be; this saves time and
-  /// changes nothing as long as the expectation is not off by more than it says it may be.
+  /// @param thrifty do not search images in which the expected pad cannot be. This saves time and
+  /// changes nothing as long as the expectation's error is within its stated bound.
   explicit PadSearch(bool thrifty = true) : thrifty_(thrifty) {}
 
-  /// The sighting that the image shows, if any. `believed` is the own state at the image's time, `expected` knows where
-  /// the pad should be. The image is possible (estimation::IsPossible). Allocates.
+  /// The sighting that the image shows, if any. `believed` is the own state at the image's time,
+  /// `expected` predicts the pad. The image is possible (estimation::IsPossible). Allocates.
   std::optional<estimation::PadSighting> Find(const estimation::PadImage& image,
                                               const estimation::VehicleState& believed,
                                               const estimation::PadFilter& expected);
@@ -38,8 +38,8 @@ class PadSearch {
       finder_;  // since the first search: not everybody has a camera
 };
 
-/// Whether a pad at p_C, its centre in the camera's frame [m], with anything of its sheet within
-/// `radius` of there, may show a tag in the image.
+/// Whether a tag may show in the image. p_C is the pad's expected centre in the camera's frame [m];
+/// all of its sheet is within `radius` of it.
 bool MayShowPad(const Eigen::Vector3d& p_C, double radius,
                 const estimation::CameraIntrinsics& camera);
 

@@ -77,8 +77,8 @@ Pilot::Pilot(const OnboardOptions& options, const OnboardParts& parts,
       std::min(parameters_.contact_force, kContactShare * model_.HoverThrust());
   parameters_.corridor_radius = options.corridor_radius;
   parameters_.contact_distance = options.deck_size * std::sqrt(0.5) + model_.foot_radius;
-  // A plan that turns away from the deck is made at the next step, flown a latency later and followed when
-  // the attitude is there.
+  // A plan that turns away from the deck is made at the next step and flown a latency later. Then
+  // the attitude has to follow.
   const double latency = options.latency.measured ? options.latency.longest : Latency();
   parameters_.turn_time = 1.0 / options.replan_rate + latency + kAttitudeLag;
   parameters_.climb_time = 1.0 / options.close_rate + latency + kAttitudeLag;
@@ -213,8 +213,8 @@ const planning::ReplanResult* Pilot::Replan(const estimation::VehicleState& vehi
   return &result;
 }
 
-// A measured step that took longer than expected: its plan is flown from when it was there, and no other
-// step begins before.
+// A measured step that took longer than expected. Its plan is flown from the time it was ready, and
+// no other step begins before.
 bool Pilot::DeliverLate(double t) {
   if (!options_.latency.measured || measured_latency_ <= replan_.latency_s) return false;
   busy_until_ = t + measured_latency_;
@@ -257,8 +257,8 @@ bool Pilot::WantsPlan(const estimation::PadFilter& filter, double t) const {
   if (mission_.guidance == Guidance::kFollowPad || mission_.guidance == Guidance::kTouchDown) {
     return true;
   }
-  // Holding ends with a plan to a known pad, so one is tried; without the pad, or without knowing
-  // where it is itself, the vehicle rests.
+  // Hold ends with a plan to a known pad, so one is tried. Without the pad, or without a usable own
+  // state, the vehicle rests.
   return mission_.mode == MissionMode::kHold && own_usable_ && IsSureOfTarget(filter, t);
 }
 
@@ -266,7 +266,7 @@ double Pilot::RestClimb() const {
   return mission_.guidance == Guidance::kClimb ? parameters_.follow_height : 0.0;
 }
 
-// A vehicle that comes to rest may start above the deck: its request holds the pad, too.
+// A vehicle that comes to rest may start above the deck, so its request holds the pad, too.
 const planning::ReplanResult& Pilot::Ask(bool for_plan, const estimation::PadFilter& filter,
                                          const planning::OccupancyMap& map) {
   ReplanRequest& request = replan_.request;
@@ -298,7 +298,8 @@ PilotCommand Pilot::Control(const OwnState& own) {
   return command;
 }
 
-// Nothing is known of the attitude, so no moment can be right. An autopilot that has one of its own levels out.
+// The attitude is unknown, so no moment can be right. An autopilot with its own attitude levels
+// out.
 ControlOutput Pilot::Blind(double t, const planning::FlatState& reference) const {
   ControlOutput level;
   level.wrench.thrust =
@@ -315,8 +316,8 @@ ControlOutput Pilot::Tracked(const estimation::VehicleState& vehicle,
   planning::FlatState reference = committed;
   Disturbance compensated = disturbance();
   const bool landing = Landing();
-  // In a gust at contact the lean matters more than centimetres. But without an estimate of the wind the
-  // errors of position are what holds the vehicle against it.
+  // In a gust at contact the lean matters more than centimetres. But without an estimate of the
+  // wind, only errors of position hold the vehicle against it.
   if (landing && observer_) {
     const double share =
         (kFlareBegins - foot_height_) / (kFlareBegins - parameters_.contact_height);
@@ -327,8 +328,9 @@ ControlOutput Pilot::Tracked(const estimation::VehicleState& vehicle,
   return parts_.controller->Update(told, reference, compensated, TiltMost(vehicle));
 }
 
-// Leaning farther so close to the deck, the hull's rim would touch it before the feet do. But who is blown off
-// a way that is not to end there needs all the lean there is. The margin is also for a lean that turns meanwhile.
+// If it leaned farther so close to the deck, the hull's rim would touch before the feet. But a
+// vehicle that is blown off a path that does not land needs all the lean there is. The margin is
+// also for a lean that turns meanwhile.
 double Pilot::TiltMost(const estimation::VehicleState& vehicle) const {
   const double lean = FeetFirstTilt(model_, vehicle.q_WB) - kFlareMargin;
   return at_deck_ && lean > 0.0 && !blown_off_ ? lean : std::numeric_limits<double>::infinity();
@@ -346,14 +348,15 @@ planning::FlatState Pilot::Reference(double t) const {
   return reference;
 }
 
-// Nearer to its end a new plan to it would put it off: from here on it is the level stretch that is
-// planned, along the pad's way as it is known by now.
+// So near to the plan's end a new plan to it would postpone the end. From then on only the level
+// stretch is planned, along the pad's path as predicted now.
 bool Pilot::Levelled(double t) const {
   const double left = plan_end_t_ - (t + replan_.latency_s);
   return arriving() && left < options_.shortest_contact_plan;
 }
 
-// Whatever the mission wants: where nothing else is proven, a landing that has begun is flown to its end.
+// A landing that has begun is flown to its end where nothing else is proven, whatever the mission
+// wants.
 bool Pilot::Landing() const { return mission_.mode == MissionMode::kLanding || lands_; }
 
 // A landing that is given up is turned away from the deck at once.
@@ -380,7 +383,7 @@ bool Pilot::plan_valid(double t) const {
 
 double Pilot::HeadingAhead(const estimation::VehicleState& vehicle,
                            const estimation::PadFilter& filter) const {
-  // The way, not the reference: that of a pair soon turns into its stop.
+  // The path, not the reference: the reference of a pair soon turns into its stop.
   const Eigen::Vector3d ahead = WayAt(vehicle.t + kLookAhead) - WayAt(vehicle.t);
   if (ahead.head<2>().norm() > kLookDistance) {
     return Seeing(std::atan2(ahead.y(), ahead.x()), vehicle.p_WB);
@@ -406,8 +409,9 @@ double Pilot::Seeing(double heading, const Eigen::Vector3d& p_WB) const {
   return estimation::WrapAngle(heading + off - std::clamp(off, -kInSight, kInSight));
 }
 
-// Where the camera sees the way ahead, but over the deck in wind a foot to the side that comes first: the
-// one next to the heading so far, unless another one leads much nearer to the way and there is time.
+// The camera should see the path ahead. But over the deck in wind a foot should point to the low
+// side, so that it touches first. The nearest such heading to the present one is taken. If that is
+// far off the path and there is time, it is the nearest to the path.
 double Pilot::DesiredHeading() {
   const Eigen::Vector3d force_W =
       observer_ ? observer_->steady_force_W() : Eigen::Vector3d(Eigen::Vector3d::Zero());

@@ -22,7 +22,8 @@
 
 namespace touchdown::control {
 
-/// A plan that is to end in contact: `level_time` before it [s], level, sinking with `touchdown_rate` [m/s].
+/// A plan that ends in contact. It ends `level_time` [s] before it, level, sinking with
+/// `touchdown_rate` [m/s].
 planning::EndpointTarget ContactTarget(const estimation::VehicleModel& model, double touchdown_rate,
                                        double level_time);
 /// Between a plan's end and contact in still air, in which the tilt dies away [s].
@@ -48,10 +49,9 @@ class Pilot {
   void StepMission(const OwnState& own, const estimation::PadFilter& filter, double foot_force,
                    double dt);
 
-  /// One replanning step while flying, to the pad or to rest as the mission wants; nullptr while
-  /// hovering or disarmed, and where the planner had nothing to do. Call at
-  /// replan_rate, or at close_rate where it `plans_often`. The result
-  /// is the planner's until the next.
+  /// One replanning step while flying, to the pad or to rest as the mission wants. nullptr while
+  /// hovering or disarmed, and where the planner had nothing to do. Call at replan_rate, or at
+  /// close_rate where it `plans_often`. The planner owns the result until the next.
   const planning::ReplanResult* Replan(const estimation::VehicleState& vehicle,
                                        const estimation::PadFilter& filter,
                                        const planning::OccupancyMap& map);

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Returns from the pad vehicle are no obstacles, or the goal of the flight would be one. Returns that may be from it are
-// kept in doubt until the tags show where it was (touchdown/planning/map/pad_outline.h).
-// In the frame of an estimated own state a sighting is as exact as the tags are. But the frame wanders as the estimate
-// does, which the pad filter takes for a motion of the pad. And the pad's GPS is off by the estimate's whole error. So
-// GPS leads to the pad, with the estimate's doubt added to its own. Tags, once seen, guide alone: the landing needs the
-// place relative to the pad only, which does not suffer from an estimate that has drifted.
+// Returns from the pad vehicle are no obstacles: the goal of the flight would be one. Returns that
+// may come from it are kept in doubt until the tags show where it was
+// (touchdown/planning/map/pad_outline.h). In the frame of an estimated own state a sighting is as
+// exact as the tags are. But the frame drifts with the estimate, and the pad filter sees this drift
+// as a motion of the pad. The pad's GPS is off by the estimate's whole error. So GPS leads to the
+// pad, with the estimate's uncertainty added to its own. Once seen, tags guide alone: the landing
+// only needs the position relative to the pad, which does not suffer from a drifted estimate.
 #include "control/onboard/senses.h"
 
 #include <algorithm>
@@ -18,8 +19,8 @@ namespace {
 
 constexpr double kTagsGuide = 0.5;      // GPS is left out while tags are younger than this [s]
 constexpr double kMaxClockLead = 0.05;  // of the newest own state: no measurement is [s]
-// From a start that is given free no farther than the hull, no stop is in free cells: a vehicle whose hull reaches 0.52 m
-// never left 0.8 m in wind, and always left 0.9 m.
+// If only the hull's space is marked free at the start, no stop lies in free cells. A vehicle whose
+// hull reaches 0.52 m never left 0.8 m in wind, and always left 0.9 m.
 constexpr double kAroundHull = 0.45;  // [m]
 
 Taken TakenAs(estimation::PadUpdate update) {
@@ -125,7 +126,7 @@ Taken Senses::Take(const estimation::DepthImage& image) {
   return Taken::kUsed;
 }
 
-// Where the pad was at `stamp`, with the doubt of then and of today.
+// Where the pad was at `stamp`, with its uncertainty of then and of today.
 planning::PadOutline Senses::Outline(double t, double stamp) const {
   if (pad_is_obstacle_ || !pad_.initialized()) return {};
   planning::PadOutline outline = planning::OutlineOf(pad_.Estimate(stamp), deck_half_size_);

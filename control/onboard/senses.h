@@ -17,8 +17,8 @@
 
 namespace touchdown::control {
 
-/// What an Onboard makes of its measurements: its own state, the pad filter, the map with its memory. Map and pad
-/// filter live in the frame of the own state: where the vehicle takes W to be.
+/// An Onboard's estimates from its measurements: its own state, the pad filter, the map with its memory. Map and pad
+/// filter use the frame of the own state: W as the vehicle estimates it.
 class Senses {
  public:
   /// @throws std::invalid_argument naming the first option out of its range.
@@ -33,7 +33,7 @@ class Senses {
   Taken Take(const estimation::PadImage& image);
   Taken Take(const estimation::DepthImage& image);
 
-  /// The time stamp is ahead of all that is known of the time, or no number.
+  /// The time stamp is ahead of all known times, or not a number.
   bool IsAhead(double t) const;
 
   /// The flight begins here: the space around the vehicle is free.

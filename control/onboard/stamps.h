@@ -10,7 +10,7 @@ namespace touchdown::control {
 inline constexpr double kLatestTime = 1e10;  ///< the clock of 1970 is far below [s]
 constexpr bool IsTime(double t) { return t >= 0.0 && t <= kLatestTime; }
 
-/// The time stamps of one sensor that were looked at, the newest: a ring. Does not allocate.
+/// The newest time stamps of one sensor that were checked: a ring. Does not allocate.
 class Stamps {
  public:
   bool Has(double t) const {

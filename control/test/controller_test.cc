@@ -215,7 +215,7 @@ TEST(GeometricController, BodyRateFollowsTheReference) {
   EXPECT_LT((output.wrench.moment_B - gyroscopic).norm(), 1e-9);
 }
 
-// Rotors that give more are told less: of the thrust, and of its limit.
+// Rotors that give more than the model get smaller commands, and a smaller limit.
 TEST(GeometricController, AnswersWithTheThrustThatTheRotorsHave) {
   const estimation::VehicleModel model = TestVehicle();
   const auto controller = MakeController("geometric", model);
@@ -234,7 +234,7 @@ TEST(GeometricController, AnswersWithTheThrustThatTheRotorsHave) {
   }
 }
 
-// Rotors that have no thrust to spare leave the heading behind; the thrust axis must not turn with that.
+// Rotors at their limit cannot follow the heading; the thrust axis must not turn because of that.
 TEST(GeometricController, AHeadingFarOffDoesNotTurnTheThrustAxisAside) {
   const auto model = TestVehicle();
   const auto controller = MakeController("geometric", model);

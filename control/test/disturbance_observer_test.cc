@@ -68,7 +68,7 @@ estimation::VehicleModel Vehicle() {
   return model;
 }
 
-/// Thrusts that shake the vehicle without turning it over.
+/// Thrusts that shake the vehicle, but do not turn it over.
 Eigen::Vector4d Shaking(const estimation::VehicleModel& model, double t) {
   const double hover = 0.25 * model.HoverThrust();
   const double a = 0.15 * std::sin(9.0 * t);
@@ -119,7 +119,7 @@ void Heave(DisturbanceObserver* observer, Body* body, double duration, double sh
   }
 }
 
-// A force that grows with the thrust is no wind: not upright, and not while the vehicle leans.
+// A force that grows with the thrust is not wind, upright or leaning.
 TEST(DisturbanceObserver, RotorsAndMassThatAreNotTheModelsAreAFactorOfTheThrust) {
   for (const double gain : {0.67, 1.0, 1.5}) {
     for (const double lean : {0.0, 0.35}) {
@@ -128,7 +128,7 @@ TEST(DisturbanceObserver, RotorsAndMassThatAreNotTheModelsAreAFactorOfTheThrust)
       Body body(Vehicle());
       body.state.q_WB = Eigen::AngleAxisd(lean, Eigen::Vector3d::UnitX());
       const Disturbance wind = {{3.0, -2.0, 0.0}, Eigen::Vector3d::Zero(), gain};
-      // On the way the sum of factor and force is right already: no part of it is counted twice.
+      // Meanwhile the sum of factor and force is already right: no part is counted twice.
       Heave(&observer, &body, 1.5, 0.0, wind);
       const Disturbance& found = observer.disturbance();
       const Eigen::Vector3d thrust_W =
@@ -237,7 +237,7 @@ TEST(DisturbanceObserver, FeetInContactTeachNothing) {
 }
 
 TEST(DisturbanceObserver, SaturationDoesNotWindItUp) {
-  // Asked for more than the rotors have, they give what they have: no push is behind that.
+  // Beyond their limit the rotors give less than commanded: that is no disturbance.
   const estimation::VehicleModel model = Vehicle();
   const Mixer mixer(model);
   DisturbanceObserver observer(model);
@@ -253,7 +253,7 @@ TEST(DisturbanceObserver, SaturationDoesNotWindItUp) {
 }
 
 TEST(DisturbanceObserver, NoisyVelocityHardlyShakesTheEstimate) {
-  // What the filter of the own state has left: 3 cm/s that change ten times a second.
+  // Remaining error of the own-state filter: 3 cm/s that change ten times a second.
   DisturbanceObserver observer(Vehicle());
   Body body(Vehicle());
   std::mt19937 random(5);

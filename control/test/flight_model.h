@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A small quadrotor for the control tests, independent of sim/: rigid body with quaternion, mixer,
-// first-order rotor lag, linear rotor drag; fourth-order Runge-Kutta, control at 500 Hz held over
-// each step.
+// A small quadrotor for the control tests, independent of sim/. It is a rigid body with quaternion,
+// mixer, first-order rotor lag and linear rotor drag. Integration is fourth-order Runge-Kutta, with
+// control at 500 Hz held over each step.
 #pragma once
 
 #include <functional>

@@ -29,7 +29,7 @@ TEST(LandingGate, GateHoldsAboveOneMetre) {
   }
 }
 
-// The tags are in view: no lull is waited for with a go-around.
+// The tags are in view: no go-around to wait for a lull.
 TEST(LandingGate, AGustIsWaitedOutAtTheHeightOfTheGateOrBelow) {
   for (const double begins : {1.4, 0.7, 0.37}) {
     Mission mission;
@@ -127,7 +127,7 @@ TEST(LandingGate, TagsLostNearTheDeckAreBridged) {
 }
 
 TEST(LandingGate, WhatCannotBeBridgedIsNotDescended) {
-  // Too long a way, and too vague a pad by its end.
+  // The way is too long, and the pad too uncertain at its end.
   for (const bool vague : {false, true}) {
     Mission mission;
     mission.DescendTo(vague ? 0.55 : 0.8);
@@ -139,7 +139,7 @@ TEST(LandingGate, WhatCannotBeBridgedIsNotDescended) {
       lowest = std::min(lowest, mission.outputs.foot_height);
     }
     EXPECT_EQ(mission.outputs.reason, TransitionReason::kTagsLost) << vague;
-    // Of what can still be seen for gate_tag_age, and braking; no farther.
+    // Only as far as gate_tag_age and braking allow.
     EXPECT_GT(lowest, lost - 0.2) << vague;
     EXPECT_FALSE(mission.outputs.committed);
   }

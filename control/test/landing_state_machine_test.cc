@@ -92,7 +92,7 @@ TEST(LandingStateMachine, TrackingHoldsAndRecovers) {
 }
 
 // Committed, a descent goes on without a sighting. So both the command and the vehicle have to be low, and the gate open.
-// Pad and plan, both, and for as long as it takes.
+// Both pad and plan are needed, for the whole time.
 TEST(LandingStateMachine, HalfOfWhatItNeedsIsNoRecovery) {
   const Mission::Change lacks[] = {
       [](MissionInputs& in) { in.has_plan = false; },
@@ -108,7 +108,7 @@ TEST(LandingStateMachine, HalfOfWhatItNeedsIsNoRecovery) {
     lack(mission.in);
     mission.Run(3.0);
     EXPECT_EQ(mission.outputs.mode, MissionMode::kHold);
-    // What it lacked comes for a moment less than is asked for, and goes again.
+    // The missing condition holds for a little less than required, then ends again.
     const MissionInputs lacking = mission.in;
     mission.in = Fine();
     mission.in.t = lacking.t;
@@ -150,7 +150,7 @@ TEST(LandingStateMachine, TheCommandWaitsForAVehicleThatLags) {
   EXPECT_EQ(mission.outputs.descent_hold, DescentHold::kLag);
   mission.Run(1.0);
   EXPECT_NEAR(mission.outputs.foot_height, held, 1e-6);
-  // The goal counts as reached from so near that the vehicle would not come: the command goes on.
+  // The goal counts as reached so near that the vehicle would stop there: the command goes on.
   mission.in.at_goal = true;
   mission.Run(0.2);
   EXPECT_LT(mission.outputs.foot_height, held);
@@ -298,7 +298,7 @@ INSTANTIATE_TEST_SUITE_P(LandingStateMachine, EachDescent,
                            return test.param == DescentStyle::kPlanned ? "planned" : "vertical";
                          });
 
-// Lands a mission of either style, so far that feet which touch would end it.
+// Lands a mission of either style until a touch of the feet would end it.
 void Land(DescentStyle style, Mission* mission) {
   mission->in.descent = style;
   mission->GoTo(MissionMode::kTracking);
@@ -392,7 +392,7 @@ TEST_P(EachDescent, FuzzNeverDisarmsInTheAir) {
         // Nothing is known of the time between two samples.
         lifted_for =
             touching ? -1.0 : std::max(0.0, lifted_for + (lifted_for < 0.0 ? 0.0 : passed));
-        // Two touches far apart are none that lasts.
+        // Two touches far apart are no lasting contact.
         const bool lasts = lifted_for <= parameters.contact_break + 1e-9 &&
                            passed <= parameters.contact_gap && (touched || contact_for > 0.0);
         contact_for = lasts ? contact_for + passed : 0.0;
@@ -425,7 +425,7 @@ TEST(LandingStateMachine, TheCommandMeetsTheDeckWithTheContactRate) {
   EXPECT_NEAR(mission.outputs.foot_height_rate, -mission.parameters.contact_rate, 2e-3);
 }
 
-// Feet that bounce have come to stay, but the rotors stop only when they rest.
+// Feet that bounce count as contact, but the rotors stop only when the feet rest.
 TEST(LandingStateMachine, ABounceDoesNotInterruptContactAndIsNoRest) {
   const auto disarms_after = [](double lifted) {
     Mission mission;

@@ -30,7 +30,7 @@ TEST(Lean, FootAndRimTouchTogetherAtTheFeetFirstTilt) {
   EXPECT_NEAR(foot.z(), rim.z(), 1e-12);
 }
 
-// Leaning anywhere, at that tilt the lowest point of the feet is as low as the rim's.
+// In any direction, at that tilt the lowest point of the feet is as low as the rim's.
 TEST(Lean, BetweenTwoFeetTheRimTouchesSooner) {
   const estimation::VehicleModel model = Vehicle();
   for (double azimuth = -3.0; azimuth < 3.0; azimuth += 0.3) {

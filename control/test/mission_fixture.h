@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A mission that is run step by step: what the tests of the landing state machine share.
+// A mission that is run step by step, shared by the tests of the landing state machine.
 #pragma once
 
 #include <algorithm>

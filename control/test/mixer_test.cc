@@ -118,7 +118,7 @@ TEST(Mixer, MomentsMayShareInTheThrust) {
   }
 }
 
-// A wheel that makes little yaw, however the units compare, takes nothing from what the rotors can.
+// A wheel with little yaw moment, in any unit, takes nothing from the rotors.
 TEST(Mixer, OneMoreActuatorTakesNoAuthorityAway) {
   const double alone = estimation::HoverTurn(TestVehicle()).z();
   for (const double most : {0.001, 0.1, 1.0}) {
@@ -173,7 +173,7 @@ TEST(Mixer, SaturatedKeepsLimitsAndPriority) {
   EXPECT_GT(saturated, 7500);
 }
 
-// Before, a turn lifted a vehicle whose rotors are stronger than it knows by metres per second.
+// Before, a turn lifted a vehicle with stronger rotors than modelled by metres per second.
 TEST(Mixer, RollAndPitchRaiseTheThrustToHalfOfHoverAtMost) {
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);

@@ -16,7 +16,7 @@
 namespace touchdown::control {
 namespace {
 
-/// What the way from a sensor to the vehicle does.
+/// The effects of the transmission from a sensor to the vehicle.
 struct Mess {
   double delay = 0.0;        ///< each measurement comes later by up to this [s] ...
   double own_delay = 0.0;    ///< ... and a given state by this [s]
@@ -73,7 +73,7 @@ double DistanceTo(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& p) {
   return box.exteriorDistance(p);
 }
 
-/// An autopilot that takes thrust and attitude and knows its own: 20 rad/s, well damped.
+/// An autopilot with its own attitude that follows thrust and attitude: 20 rad/s, well damped.
 estimation::Commands Autopilot(const Setpoint& setpoint, const ToyWorld& world) {
   const estimation::VehicleState& is = world.vehicle;
   const Eigen::Quaterniond off(is.q_WB.toRotationMatrix().transpose() * setpoint.R_WB);
@@ -205,7 +205,7 @@ TEST(OnboardFlights, LandThoughTheOwnStateIsAwayForAWhile) {
   }
 }
 
-// What comes twice is as if it had come once.
+// A measurement that comes twice acts as if it came once.
 TEST(OnboardFlights, DoublesChangeNoBit) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     const Landing once = Fly(seed, {}), twice = Fly(seed, {0.0, 0.0, 1.0});
@@ -215,7 +215,7 @@ TEST(OnboardFlights, DoublesChangeNoBit) {
   }
 }
 
-// A whole flight: measurements and set-points, plans and all. What the first seconds allocate is room that is kept.
+// A whole flight: measurements and set-points, plans and all. The first seconds allocate room that is kept.
 TEST(OnboardFlights, NothingIsAllocatedOnceItFlies) {
   if (solvers::AllocationCount() < 0) GTEST_SKIP() << "a sanitizer owns the heap";
   ToyWorld world;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What becomes of a measurement, whenever and however often it comes.
+// What happens to a measurement, whenever and however often it comes.
 #include "touchdown/control/onboard/onboard.h"
 
 #include <algorithm>
@@ -144,7 +144,7 @@ TEST(Onboard, BetweenGivenStatesAndShortlyAfterItGoesOnAsItWent) {
   EXPECT_NEAR(onboard.OwnAt(9.0).p_WB.x(), 0.2, 1e-12);  // no longer than 0.1 s
 }
 
-// One state from far ahead must not make all that follow too old.
+// One state from far ahead must not make all later ones too old.
 TEST(Onboard, AStateFromTheFutureIsRefused) {
   Onboard onboard = Hovering(0.1);
   onboard.Step(0.1);
@@ -153,7 +153,7 @@ TEST(Onboard, AStateFromTheFutureIsRefused) {
   EXPECT_EQ(onboard.own().t, 0.2);
 }
 
-// Before the first step the time is not known: what is far ahead then is forgotten at the first step.
+// Before the first step the time is not known: states far ahead are forgotten at the first step.
 TEST(Onboard, AWrongStateBeforeTheFirstStepDoesNotBlindIt) {
   Onboard onboard = Hovering(0.1);
   onboard.Take(At(1e6, {9, 9, 9}));
@@ -265,7 +265,7 @@ TEST(Onboard, AForceBeforeTheOwnStateIsUnasked) {
   EXPECT_EQ(onboard.Take(estimation::FootForce{1e9, 9.0}), Taken::kUnasked);
 }
 
-// A sensor that dies under load would press for ever.
+// A sensor that fails under load would report that load for ever.
 TEST(Onboard, AForceIsForgotten) {
   Onboard onboard = Hovering(0.1);
   onboard.Step(0.1);
@@ -332,7 +332,7 @@ TEST(Onboard, WithoutAnAttitudeNoMomentIsAsked) {
   EXPECT_TRUE(blind.armed);
 }
 
-// A corrupt copy does not stand for the good one.
+// A corrupt copy does not replace the good one.
 TEST(Onboard, WhatWasInvalidMayComeAgain) {
   Onboard onboard = Hovering(1.0);
   EXPECT_EQ(onboard.Take(estimation::PadGpsFix{0.5, {kNan, 1.0}, 0.05}), Taken::kInvalid);
@@ -349,7 +349,7 @@ TEST(Onboard, ASightingFromBeforeTheHistoryIsTooOld) {
   EXPECT_EQ(onboard.Take(sighting), Taken::kUsed);
 }
 
-// Of sensors that are no IMU: fused once, however often they come.
+// Sensors other than the IMU: fused once, however often they come.
 TEST(Onboard, DoublesOfTheOwnSensorsChangeNothing) {
   OnboardOptions options = Options();
   options.own_state.emplace();
@@ -493,7 +493,7 @@ TEST(Onboard, AnImageInMillimetresSaysNothing) {
   EXPECT_EQ(onboard.Take(image), Taken::kUsed);
 }
 
-// One pixel that cannot be does not spoil the others.
+// One impossible pixel does not invalidate the others.
 TEST(Onboard, AnImageWithAHotPixelIsUsed) {
   Onboard onboard = Hovering(0.1);
   ToyWorld world;

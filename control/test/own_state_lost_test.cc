@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the mission does when the vehicle no longer knows its own state well.
+// The mission when the vehicle no longer knows its own state well.
 #include <gtest/gtest.h>
 
 #include "control/test/mission_fixture.h"

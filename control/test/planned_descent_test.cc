@@ -9,8 +9,8 @@ namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
-// A mission that tracks with a plan which touches the deck in `arrival` seconds; distance and height
-// shrink with the time that is left, as they do on a plan.
+// A mission in tracking with a plan that touches the deck in `arrival` seconds. Distance and height
+// shrink with the remaining time, as they do on a plan.
 class Approach : public Mission {
  public:
   explicit Approach(double arrival = 4.0) {
@@ -128,7 +128,7 @@ TEST(PlannedDescent, BelowTheGateHeightIsNoPlaceToWait) {
   EXPECT_EQ(mission.outputs.guidance, Guidance::kFollowPad);
 }
 
-// What is left of the descent once its end is asked for: until then it goes on at its rate.
+// The rest of the descent once its end is requested: until then it goes on at its rate.
 TEST(PlannedDescent, TurnsSoFarAboveTheGateHeightThatItEndsThere) {
   for (const double sink_rate : {-1.0, 0.0, 0.6, 1.6}) {
     Approach mission;
@@ -221,7 +221,7 @@ TEST(PlannedDescent, AShortLossOfTheTagsIsBridged) {
   EXPECT_TRUE(mission.outputs.committed);
 }
 
-// Each way to lose a landing that has been decided on, at once or after its patience.
+// Each way to lose a landing that has been decided on, at once or after its timeout.
 struct Loss {
   const char* name;
   double when;  ///< before contact [s]
@@ -350,7 +350,7 @@ TEST(PlannedDescent, FeetThatTouchAreNotPulledOffAgain) {
   EXPECT_EQ(ModeOf(mission), MissionMode::kLanding);
 }
 
-// However high it was given up, or low: the pad's surface is no place to climb from below.
+// At whatever height it was given up: no climb begins below the pad's surface.
 TEST(PlannedDescent, AClimbBeginsBetweenDeckAndFollowHeight) {
   for (const double height : {-0.2, 2.5}) {
     Approach mission;

@@ -56,8 +56,8 @@ TEST(RotorLead, CommandsStayWithinTheLimitsAndDoNotWindUp) {
   int i = 0;
   for (; i < 10; ++i) fly(most, i * kStep);
   EXPECT_GT(given, 1.3 * hover);
-  // Back again the rotor does not fall below what is asked for, as it would for one that takes its cut
-  // commands for granted.
+  // When the demand returns, the rotor does not fall below it. It would, if the lead assumed that
+  // its clipped commands were flown.
   for (; i < 100; ++i) {
     fly(Eigen::Vector4d::Constant(hover), i * kStep);
     EXPECT_GT(given, 0.999 * hover);
@@ -65,7 +65,7 @@ TEST(RotorLead, CommandsStayWithinTheLimitsAndDoNotWindUp) {
   EXPECT_NEAR(given, hover, 1e-3 * hover);
 }
 
-// A rotor that is cut off alone lifts a vehicle of which little thrust and quick turns are asked.
+// With little thrust and quick turns, a rotor that is clipped alone lifts the vehicle.
 TEST(RotorLead, WhatTheLimitsCutOffLiftsNobody) {
   const estimation::VehicleModel model = TestVehicle();
   const Mixer mixer(model);
@@ -97,7 +97,7 @@ double Ringing(double gain, double lag, bool with_lead) {
   if (with_lead) flight.lead = &lead;
   flight.state.w_WB_B.x() = 3.0;
   double fastest = 0.0;
-  // The attitude alone: where the vehicle is and how fast is what is asked.
+  // The attitude alone: position and velocity are those demanded.
   while (flight.state.t < 0.6) {
     planning::FlatState reference;
     reference.p_WB = flight.state.p_WB;

@@ -57,7 +57,7 @@ TEST(Settling, StandingTheLawWantsItUprightOnItsWeight) {
     const ControlOutput output = MakeController(law, model)->Update(state, reference, disturbance);
     EXPECT_GT(output.R_WB_desired(2, 2), 1.0 - 1e-9) << law;
     EXPECT_GT(output.wrench.moment_B.y(), 0.5) << law;  // levels it
-    // What the deck knocks is answered with less than half as much.
+    // A knock of the deck is answered with less than half as much.
     const auto moment_x = [&](double rate) {
       estimation::VehicleState told = Leaning(standing_t);
       told.w_WB_B.x() = rate;

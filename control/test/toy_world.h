@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A small world for the tests of Onboard, independent of sim/: a rigid body with springs under its feet, ground, a wall,
-// a pad that drives straight on, and what a depth camera, a tag camera and a GPS on the pad say.
+// A small world for the tests of Onboard, independent of sim/. It has a rigid body with springs
+// under its feet, ground, a wall and a pad that drives straight on. It makes the measurements of a
+// depth camera, a tag camera and a GPS on the pad.
 #pragma once
 
 #include <algorithm>

@@ -20,7 +20,7 @@ TEST(VehicleFrequencies, TheDefaultVehicleHasTheDefaults) {
             DisturbanceObserverOptions{}.force_bandwidth);
 }
 
-// With four times the inertia a loop of half the frequency asks for the same moment at the same error.
+// With four times the inertia a loop of half the frequency needs the same moment at the same error.
 TEST(VehicleFrequencies, FollowTheRootOfWhatTurnsTheVehicle) {
   estimation::VehicleModel heavy = ToyQuadrotor();
   heavy.inertia *= 4.0;

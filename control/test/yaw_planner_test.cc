@@ -26,7 +26,7 @@ TEST(RateProfile, ArrivesWithoutOvershootForAnyStep) {
         EXPECT_LE(std::abs(step.rate), 0.8 + 1e-12);
         left -= step.advance;
         rate = step.rate;
-        // The last step may end past the point by what the rate covers in it.
+        // The last step may end past the point by the distance of one step.
         ASSERT_GE(std::copysign(left, left * distance), -1.5 * dt * dt / 8.0 - 1e-12) << dt;
       }
       EXPECT_NEAR(left, 0.0, 1e-4);

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Two extended state observers, one for the velocity and one for the angular rate: each carries the
-// measured quantity on by the model and the disturbance, and the disturbance as a constant; the
+// Two extended state observers, one for the velocity and one for the angular rate. Each predicts
+// the measured quantity by the model and the disturbance, and the disturbance as a constant. The
 // innovation corrects both (J. Han, "From PID to active disturbance rejection control", IEEE Trans.
 // Industrial Electronics 56(3), 2009). Both poles lie at one bandwidth w (Z. Gao, "Scaling and
-// bandwidth-parameterization based controller tuning", ACC 2003): the estimate is the true
-// disturbance behind w^2 / (s + w)^2, without steady error, without overshoot, and the noise of the
-// velocity reaches it with a slope of -1 above w. In discrete time both poles are at z = exp(-w dt)
-// with the gains 1 - z^2 and (1 - z)^2 / dt.
+// bandwidth-parameterization based controller tuning", ACC 2003). The estimate is the true
+// disturbance behind w^2 / (s + w)^2: no steady error, no overshoot. The noise of the velocity
+// reaches it with a slope of -1 above w. In discrete time both poles are at z = exp(-w dt) with the
+// gains 1 - z^2 and (1 - z)^2 / dt.
 //
-// The thrusts of the model are those that were commanded after the mixer's limits, behind the rotors'
-// lag, so that saturation cannot wind the observer up.
+// The thrusts of the model are those that were commanded after the mixer's limits, behind the
+// rotors' lag. So saturation cannot wind the observer up.
 
 #include "control/tracking/disturbance_observer.h"
 
@@ -31,7 +31,7 @@ constexpr double kHoverStep = 0.002;  // ... in such steps [s]
 
 constexpr double kLongestStep = 0.1;             // a longer gap restarts the observers [s]
 constexpr double kGreatestAcceleration = 100.0;  // quicker changes are jumps of an estimate [m/s^2]
-constexpr double kGreatestSpinUp = 5000.0;       // alike [rad/s^2]
+constexpr double kGreatestSpinUp = 5000.0;       // the same [rad/s^2]
 
 void Require(const char* name, double value, double low, double high) {
   if (value > low && value <= high) return;
@@ -125,7 +125,7 @@ void DisturbanceObserver::Hover(const estimation::VehicleState& state,
     hover.t = state.t - left * kHoverStep;
     Update(hover, false);
   }
-  // What the actuators are told at a start is the model's: it tells nothing of the moment.
+  // At a start the actuators are told the model's commands, which say nothing of the moment.
   disturbance_.moment_B.setZero();
 }
 
@@ -144,8 +144,8 @@ void DisturbanceObserver::Predict(double dt) noexcept {
   thrusts_ += (1.0 - std::exp(-dt / model_.rotor_lag_s)) * (commanded_ - thrusts_);
 }
 
-// What lasts vertically is a mass or rotors that are not the model's, or air that does alike: a factor on the
-// thrust, with which every error is answered, and no force. The sum of both stays as it is.
+// A lasting vertical disturbance is a wrong mass, wrong rotors, or air that acts alike. It becomes
+// a factor on the thrust, which answers every error, and no force. The sum of both stays as it is.
 void DisturbanceObserver::LearnGain(double dt) noexcept {
   double& gain = disturbance_.thrust_gain;
   const Eigen::Vector3d thrust_W =

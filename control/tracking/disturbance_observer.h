@@ -20,9 +20,10 @@ struct DisturbanceObserverOptions {
 /// Throws std::invalid_argument naming the first option out of its range.
 void Validate(const DisturbanceObserverOptions& options);
 
-/// Estimates force, moment and factor of thrust that the vehicle's model does not explain, from what the vehicle knows:
-/// its own state, and the thrusts it commanded, behind the rotors' lag. In steady wind the estimate
-/// has no bias. Its memory is its own: the tracking laws have none. Not to be shared between threads.
+/// Estimates the force, moment and thrust factor that the vehicle's model does not explain. It uses
+/// the vehicle's own state and the thrusts it commanded, behind the rotors' lag. In steady wind the
+/// estimate has no bias. It has its own memory: the tracking laws have none. Not to be shared
+/// between threads.
 class DisturbanceObserver {
  public:
   /// Rotors start at hover thrust. Throws std::invalid_argument for a model or an option out of
@@ -30,20 +31,19 @@ class DisturbanceObserver {
   explicit DisturbanceObserver(const estimation::VehicleModel& model,
                                const DisturbanceObserverOptions& options = {});
 
-  /// Takes the state at state.t, before thrusts for it are commanded; once per control step, in time
-  /// order. Does not allocate.
+  /// Takes the state at state.t, before thrusts for it are commanded. Once per control step, in
+  /// time order. A state is ignored if it is not finite, or if its velocity jumped farther than
+  /// forces can make it. A filter's velocity does so when its sensors are back. Does not allocate.
   /// @param held nothing is learned now: feet in contact push too.
-  /// A state that is not finite, or whose velocity has jumped farther than forces can make it, as a
-  /// filter's does when its sensors are back, teaches nothing either.
   const Disturbance& Update(const estimation::VehicleState& state, bool held) noexcept;
 
-  /// The thrusts [N] that the rotors are told from the last Update on, after the mixer: what the
-  /// vehicle cannot give must not be taken for a disturbance.
+  /// The thrusts [N] that the rotors are told from the last Update on, after the mixer. A thrust
+  /// that the vehicle cannot give must not count as a disturbance.
   void Command(const estimation::Commands& thrusts) noexcept;
 
-  /// As after a long hover that ends now, at state.t: force and factor that keep the vehicle at the
-  /// state's velocity and attitude with these thrusts [N] are learned. Before the first Update. Does not
-  /// allocate.
+  /// Learns as after a long hover that ends now, at state.t: the force and factor that keep the
+  /// vehicle at the state's velocity and attitude with these thrusts [N]. Before the first Update.
+  /// Does not allocate.
   void Hover(const estimation::VehicleState& state, const estimation::Commands& thrusts) noexcept;
 
   const Disturbance& disturbance() const { return disturbance_; }
@@ -65,7 +65,7 @@ class DisturbanceObserver {
   estimation::Commands thrusts_;  ///< behind the lag [N]
   estimation::Commands commanded_;
   Eigen::Vector3d v_WB_ = Eigen::Vector3d::Zero();    ///< as the model has it
-  Eigen::Vector3d w_WB_B_ = Eigen::Vector3d::Zero();  ///< alike
+  Eigen::Vector3d w_WB_B_ = Eigen::Vector3d::Zero();  ///< the same
   Disturbance disturbance_;
   Eigen::Vector3d steady_force_W_ = Eigen::Vector3d::Zero();
 };

@@ -3,9 +3,9 @@
 // body rate comes from the reference's jerk by differential flatness (planning/flatness). Its
 // derivative would need the snap, which a cubic spline does not have, and is left out. Known linear
 // rotor drag is fed forward on the reference's velocity (as M. Faessler, A. Franchi, D. Scaramuzza,
-// RA-L 2018, section III model it), and the disturbance that was estimated is
-// taken from force and moment. Rotors give the heading what roll and pitch leave, and so does the law: with a
-// heading far off, the error on SO(3) would turn the thrust axis about the wrong axes.
+// RA-L 2018, section III model it). The estimated disturbance is subtracted from force and moment.
+// Heading has the lowest priority for the rotors, and in the law: with a heading far off, the error
+// on SO(3) would turn the thrust axis about the wrong axes.
 
 #include "control/tracking/geometric_controller.h"
 
@@ -18,8 +18,8 @@ namespace touchdown::control {
 
 namespace {
 
-/// Of the desired attitude from the vehicle's [rad]: half of it is by how much the tilt's error is turned; flights that
-/// keep up with their heading stay below.
+/// Largest difference of the desired heading from the vehicle's [rad]. The tilt's error is turned
+/// by half of it. Flights that keep up with their heading stay below.
 constexpr double kFarthestHeading = 0.5;
 
 /// The heading from which AttitudeFromThrust would make R_WB, while its thrust axis points up.
@@ -53,7 +53,7 @@ ControlOutput GeometricController::Update(const estimation::VehicleState& state,
       LimitForce(PositionLoop(state, reference, model_, options_) + drag_W - disturbance.force_W,
                  model_, options_, thrust_max_, disturbance.thrust_gain, tilt_most);
 
-  // Flatness at the force that is really asked for, so that attitude and rate belong together.
+  // Flatness at the force that is really demanded, so that attitude and rate are consistent.
   planning::FlatState flat = reference;
   flat.yaw = NearerHeading(reference.yaw, R_WB);
   flat.a_WB = force.f_W / model_.mass_kg - estimation::kGravity * Eigen::Vector3d::UnitZ();

@@ -5,9 +5,9 @@
 
 namespace touchdown::control {
 
-/// Geometric tracking control on SE(3) (Lee, Leok, McClamroch 2010): attitude error on SO(3), body
-/// rate fed forward from the reference's jerk, known linear rotor drag fed forward on the
-/// reference's velocity, the given disturbance compensated.
+/// Geometric tracking control on SE(3) (Lee, Leok, McClamroch 2010), with the attitude error on
+/// SO(3). The body rate is fed forward from the reference's jerk, known linear rotor drag on the
+/// reference's velocity. The given disturbance is compensated.
 class GeometricController final : public Controller {
  public:
   /// Throws std::invalid_argument for a model or an option out of range.

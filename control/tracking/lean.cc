@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Leaning by t towards a foot at radius r and depth d, the foot is d cos t + r sin t below the centre
-// of mass, the rim of a hull of radius R and depth D is D cos t + R sin t: equal at
-// tan t = (d - D) / (R - r). Towards the middle between two feet r is smaller, and so is t.
+// A vehicle leans by t towards a foot at radius r and depth d. The foot is then d cos t + r sin t
+// below the centre of mass. The rim of a hull of radius R and depth D is D cos t + R sin t below
+// it. Both are equal at tan t = (d - D) / (R - r). Towards the middle between two feet r is
+// smaller, and so is t.
 
 #include "control/tracking/lean.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A vehicle that holds still in wind leans against it. What that asks of a landing: the feet are to
-// touch first, not the hull's rim.
+// A vehicle that holds still in wind leans against it. In a landing its feet must still touch
+// first, not the hull's rim.
 #pragma once
 
 #include <Eigen/Core>
@@ -24,8 +24,8 @@ double FootDrop(const estimation::VehicleModel& model, const Eigen::Quaterniond&
 double LeanUnder(double weight, const Eigen::Vector3d& force_W);
 
 /// Heading [rad] that brings a foot to the side a vehicle leans to under the horizontal part of
-/// `force_W` [N], of all such headings the one nearest to `wanted` [rad]. `wanted` itself without a
-/// force or without feet.
+/// `force_W` [N]. Of all such headings it is the nearest to `wanted` [rad]. `wanted` itself without
+/// a force or without feet.
 double HeadingIntoWind(const estimation::VehicleModel& model, const Eigen::Vector3d& force_W,
                        double wanted);
 

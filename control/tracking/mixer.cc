@@ -3,7 +3,7 @@
 // Saturation by priority, with the contribution r of the roll and pitch moment:
 // 1. A collective thrust T is possible if low_i <= s r_i + c_i T <= high_i for every actuator i. c_i is its share in
 //    pure thrust. It is 0 for an actuator that makes a moment alone, which bounds s by itself.
-// 2. Take the greatest scale s <= 1 that leaves such a T, none above what is wanted or what the thrust may be raised to.
+// 2. Take the greatest scale s <= 1 with such a T that does not exceed the wanted or raised thrust.
 //    It follows in closed form from all rotors and pairs of them.
 // 3. Clamp T to its interval. Yaw takes what is left.
 

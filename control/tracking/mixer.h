@@ -8,16 +8,16 @@
 
 namespace touchdown::control {
 
-/// What each actuator is told, in the order of VehicleModel::actuators.
+/// The command of each actuator, in the order of VehicleModel::actuators.
 struct MixerOutput {
   estimation::Commands thrusts;  ///< within the actuators' limits [N], of moments [N m]
   bool saturated = false;        ///< the wrench could not be had in full
 };
 
 /// Wrench to commands for any four to eight actuators (eq. 8 generalised). Where the limits forbid
-/// the whole wrench, roll and pitch moment come first, then collective thrust, then yaw moment. For them the
-/// thrust is raised to kRaisedThrust of the way from the least to hover at most: a vehicle that every correction of its attitude lifts leaves
-/// its way.
+/// the whole wrench, roll and pitch moment come first, then collective thrust, then yaw moment. For
+/// them the thrust is raised at most to kRaisedThrust of the way from the least to hover. If every
+/// attitude correction lifted the vehicle, it would leave its path.
 class Mixer {
  public:
   static constexpr double kRaisedThrust = 0.5;  ///< [-]
@@ -25,7 +25,8 @@ class Mixer {
   /// Throws std::invalid_argument as estimation::AllocationOf does.
   explicit Mixer(const estimation::VehicleModel& model);
 
-  /// Does not allocate. A wrench that is not finite gives every rotor the least thrust, and no moment else.
+  /// Does not allocate. A wrench that is not finite gives every rotor the least thrust, and no
+  /// other moment.
   MixerOutput Mix(const Wrench& wrench) const noexcept;
 
   /// The wrench that the commands produce.

@@ -6,9 +6,9 @@
 namespace touchdown::control {
 
 /// The paper's law (eq. 19-22): force from position and velocity error plus the reference's
-/// acceleration, moment proportional to the small-angle attitude error. Printed without rate
-/// damping eq. 21 is unstable; the damping of its source (the paper's [14]) is kept, on the body
-/// rate itself, without feed-forward of rate or drag.
+/// acceleration, moment proportional to the small-angle attitude error. Eq. 21 is printed without
+/// rate damping, and is then unstable. Its source (the paper's [14]) has damping. It is kept here,
+/// on the body rate itself, without feed-forward of rate or drag.
 class PaperController final : public Controller {
  public:
   /// Throws std::invalid_argument for a model or an option out of range.

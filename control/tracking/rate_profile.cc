@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Discrete bang-coast-bang profile. The next rate r' is the greatest that still stops in time:
-// the rest of the step at the mean rate (r + r') dt / 2 plus the braking distance r'^2 / (2 a) must
-// not exceed the distance, a quadratic in r'.
+// Discrete bang-coast-bang profile. The next rate r' is the greatest that still stops in time. The
+// rest of the step at the mean rate (r + r') dt / 2, plus the braking distance r'^2 / (2 a), must
+// not exceed the distance. This is a quadratic in r'.
 
 #include "control/tracking/rate_profile.h"
 

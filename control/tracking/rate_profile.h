@@ -9,10 +9,10 @@ struct RateStep {
   double rate = 0.0;     ///< its rate at the end
 };
 
-/// One step of dt seconds towards a point `distance` ahead (signed), at no more than `rate_max`,
-/// changing the rate by no more than `acceleration` dt, arriving at rest with an overshoot of at
-/// most acceleration dt^2 / 8 (once the present rate allows it). The rate is linear within the
-/// step, the advance its integral.
+/// One step of dt seconds towards a point `distance` ahead (signed), at no more than `rate_max`.
+/// The rate changes by no more than `acceleration` dt. The reference arrives at rest with an
+/// overshoot of at most acceleration dt^2 / 8 (once the present rate allows it). The rate is linear
+/// within the step, the advance its integral.
 /// @pre dt >= 0, rate_max > 0, acceleration > 0. Does not allocate.
 RateStep StepTowards(double distance, double rate, double rate_max, double acceleration, double dt);
 

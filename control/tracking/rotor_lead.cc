@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A lead filter (T s + 1) / (T s / (1 + k) + 1) on the rotors' commands, T the model's lag. It is made with
-// the model's rotors instead of a difference of the command: command = given + (1 + k)(wanted - given). The
-// mixer decides what of it is given up where the limits forbid it: a rotor that is cut off alone lifts the
-// vehicle. Yaw, to which it gives least, is not led. Rotors follow what they were told, so that nothing winds up.
+// A lead filter (T s + 1) / (T s / (1 + k) + 1) on the rotors' commands. T is the model's lag. It
+// uses the model's rotors instead of a difference of the command: command = given + (1 + k)(wanted
+// - given). The mixer decides what is given up where the limits forbid it: a rotor that is cut off
+// alone lifts the vehicle. Yaw, which the mixer serves last, is not led. Rotors follow what they
+// were told, so that nothing winds up.
 
 #include "control/tracking/rotor_lead.h"
 
@@ -10,8 +11,9 @@
 
 namespace touchdown::control {
 namespace {
-// With the plant 20 % off in everything the attitude's loop, with the observer and 4 ms of delay, keeps a damping
-// ratio of 0.52 in the worst corner (its eigenvalues); with a lead of 1 it is 0.45, without one 0.21.
+// Damping of the attitude loop in the worst corner of a plant that is off by 20 % in everything.
+// With the observer and 4 ms of delay, its eigenvalues have a damping ratio of 0.52. With a lead of
+// 1 it is 0.45, without one 0.21.
 constexpr double kLead = 2.0;
 }  // namespace
 

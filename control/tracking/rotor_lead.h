@@ -8,9 +8,9 @@
 
 namespace touchdown::control {
 
-/// Rotors follow their command with a lag. Commanding more than what is wanted, by the part that is still
-/// missing, makes them follow sooner: with the lead k as if the lag were 1 / (1 + k) of its length.
-/// That lag is what costs the attitude its damping. Not to be shared between threads.
+/// Rotors follow their command with a lag. A command that exceeds the wanted thrust, in proportion
+/// to what is still missing, makes them follow sooner. The lead k acts as if the lag were 1 / (1 +
+/// k) of its length. The lag reduces the attitude's damping. Not to be shared between threads.
 class RotorLead {
  public:
   /// Rotors start at the model's hover thrust.

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Both laws' desired force is linear in reference and disturbance (the paper's eq. 19): moving the
-// reference to the vehicle itself takes the position loop out, and an acceleration of
-// -(1 - share) g leaves the rotors that share of the weight, along the vertical. Velocities are taken out
-// of both sides, and with them the drag that is fed forward: friction holds the vehicle against the wind
-// of the drive and any other, and the attitude loop levels it about the feet that touch. Most of its damping
-// is left to them: rotors that answer to each knock of the deck lift the feet off it. The deck levels the
-// vehicle before its demand does, and what held it against the wind is gone then: on rotors that still
-// carry most of the weight it would slide, so the fade is short.
+// Both laws' desired force is linear in reference and disturbance (the paper's eq. 19). The
+// reference moves to the vehicle itself, which removes the position loop. An acceleration of -(1 -
+// share) g leaves the rotors that share of the weight, along the vertical. Velocities are removed
+// from both sides, and with them the drag that is fed forward. Friction then holds the vehicle
+// against the wind of the drive and any other, and the attitude loop levels it about the feet that
+// touch. Most of the damping is left to the feet: rotors that answer each knock of the deck lift
+// the feet off it. The deck levels the vehicle before its demand does, and then the thrust no
+// longer holds it against the wind. On rotors that still carry most of the weight it would slide,
+// so the fade is short.
 
 #include "control/tracking/settling.h"
 

@@ -33,7 +33,7 @@ class Settling {
     return 1.0 - Share(t) * (1.0 - parameters_.thrust_share);
   }
 
-  /// Blends what the law is told and asked with standing at state.t; without contact nothing is changed.
+  /// Blends the law's inputs with those of standing at state.t; without contact nothing changes.
   void Apply(estimation::VehicleState* state, planning::FlatState* reference,
              Disturbance* disturbance) const noexcept;
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What both tracking laws share: the position loop (the paper's eq. 19), the limits of the desired
-// force, and the attitude error of T. Lee, M. Leok, N. H. McClamroch, "Geometric tracking control
-// of a quadrotor UAV on SE(3)", CDC 2010, eq. 8.
+// Shared by both tracking laws: the position loop (the paper's eq. 19), the limits of the desired
+// force, and the attitude error. The last is eq. 8 of T. Lee, M. Leok, N. H. McClamroch, "Geometric
+// tracking control of a quadrotor UAV on SE(3)", CDC 2010.
 
 #include "control/tracking/tracking_law.h"
 

@@ -14,10 +14,11 @@ struct LimitedForce {
   bool thrust_limited = false;
 };
 
-/// The desired thrust vector brought within the options' limits: the vertical part never below its
-/// least, the tilt cut by shortening the horizontal part (its direction kept), the length cut last
-/// (the whole direction kept). `thrust_max` is the model's greatest thrust [N], `thrust_gain` what the rotors give over what
-/// the model says, `tilt_most` a limit besides the options' [rad]. Does not allocate.
+/// Brings the desired thrust vector within the options' limits. The vertical part is raised to its
+/// least. The tilt is cut by shortening the horizontal part (its direction is kept). The length is
+/// cut last (the whole direction is kept). `thrust_max` is the model's greatest thrust [N].
+/// `thrust_gain` is the ratio of the rotors' thrust to the model's, `tilt_most` a limit besides the
+/// options' [rad]. Does not allocate.
 LimitedForce LimitForce(const Eigen::Vector3d& f_W, const estimation::VehicleModel& model,
                         const ControllerOptions& options, double thrust_max, double thrust_gain,
                         double tilt_most);
@@ -28,8 +29,8 @@ Eigen::Vector3d PositionLoop(const estimation::VehicleState& state,
                              const estimation::VehicleModel& model,
                              const ControllerOptions& options);
 
-/// Draws the reference towards the vehicle so far that the horizontal part of PositionLoop is as with
-/// `frequency_share` times its frequency: the stiffness goes with the square of it, the damping with the
+/// Moves the reference towards the vehicle. The horizontal part of PositionLoop is then as with
+/// `frequency_share` times its frequency: the stiffness goes with its square, the damping with the
 /// first power. In [0, 1], 1 changes nothing.
 void SoftenHorizontally(double frequency_share, const estimation::VehicleState& state,
                         planning::FlatState* reference);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A loop of frequency w asks for w^2 e of angular acceleration at an error e: with what the actuators have left at
-// hover, it saturates at the error turn / w^2. That is kept where the default frequencies have it with the vehicle
-// that comes with the library; a vehicle that has more is not driven faster. A longer lag of the rotors asks for no lower
-// frequencies: RotorLead answers it (docs/vehicles.md has the flights).
+// A loop of frequency w demands an angular acceleration of w^2 e at an error e. It saturates at the
+// error turn / w^2, where turn is what the actuators can still give at hover. This error is kept
+// where the default frequencies have it for the library's default vehicle. A vehicle that has more
+// is not driven faster. A longer lag of the rotors needs no lower frequencies: RotorLead
+// compensates it (docs/vehicles.md has the flights).
 
 #include "control/tracking/vehicle_frequencies.h"
 

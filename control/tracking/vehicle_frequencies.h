@@ -7,7 +7,7 @@
 
 namespace touchdown::control {
 
-/// How fast a vehicle can follow over what the default frequencies ask; each in (0, 1].
+/// How fast a vehicle can follow, relative to the default frequencies; each in (0, 1].
 struct BandwidthRatio {
   double tilt = 1.0;  ///< of roll and pitch, and of what is steered by them
   double yaw = 1.0;

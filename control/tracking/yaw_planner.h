@@ -14,7 +14,7 @@ struct YawLimits {
   double acceleration = 4.0;  ///< > 0 [rad/s^2]
 };
 
-/// The reference dt seconds later on its way to the heading `desired` [rad], the short way round,
+/// The reference dt seconds later on its way to the heading `desired` [rad], by the shorter turn,
 /// within the limits and without overshoot. The rate changes linearly within the step and the yaw
 /// is its integral. A `desired` that is not finite brakes to rest. Throws std::invalid_argument for
 /// dt < 0 or limits <= 0. Does not allocate.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The one sentence a wrong argument is answered with: the thing, its value, the allowed range.
+// The sentence for a wrong argument: the thing, its value, the allowed range.
 
 #include "estimation/base/argument_check.h"
 
@@ -24,7 +24,7 @@ std::string WithDigits(double value, int digits) {
 #endif
 }
 
-// In a sentence 7 digits say enough, and a computed value is not shown with its rounding.
+// In a sentence 7 digits are enough, and a computed value is shown without its rounding.
 std::string SentenceNumber(double value) { return WithDigits(value, 7); }
 
 }  // namespace

@@ -6,7 +6,7 @@
 namespace touchdown::estimation {
 
 /// The largest variance in any direction of the plane: the larger eigenvalue of a symmetric 2x2
-/// matrix, of which the lower left number is not read. Does not allocate.
+/// matrix. Its lower left number is not read. Does not allocate.
 double LargestVariance(const Eigen::Matrix2d& cov);
 
 }  // namespace touchdown::estimation

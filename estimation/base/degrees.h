@@ -5,7 +5,7 @@
 
 namespace touchdown::estimation {
 
-/// Angles are radians but for what people write and read.
+/// Angles are radians, except where people write and read them.
 inline constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 inline constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 constexpr double Radians(double degrees) { return degrees * std::numbers::pi / 180.0; }

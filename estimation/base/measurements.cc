@@ -11,7 +11,7 @@ constexpr double kWidest = 1e4;    // of an image plane, over the focal length
 constexpr double kFarthest = 1e7;  // of a camera [m]
 constexpr double kRotation = 1e-3;
 
-// Written so that a number that is none fails each.
+// Written so that NaN fails each.
 bool IsPossible(const CameraIntrinsics& k, const Eigen::Vector3d& place,
                 const Eigen::Matrix3d& turn) {
   const double widest = kWidest * k.focal;

@@ -15,8 +15,8 @@ Eigen::Quaterniond ExpRotation(const Eigen::Vector3d& phi);
 /// Rotation vector of a unit quaternion [rad], its length in [0, pi].
 Eigen::Vector3d LogRotation(const Eigen::Quaterniond& q);
 
-/// The shortest turn that brings the direction of `from` into that of `to`; of opposite ones any half turn. Neither is
-/// zero. (Quaternion::FromTwoVectors of Eigen has a singular value decomposition for that, which takes seconds to
+/// The shortest turn that brings the direction of `from` into that of `to`; for opposite ones any half turn. Neither
+/// is zero. (Eigen's Quaternion::FromTwoVectors uses a singular value decomposition for it, which takes seconds to
 /// compile.)
 Eigen::Quaterniond ShortestTurn(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
 

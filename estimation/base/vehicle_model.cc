@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The wrench is linear in the commands: column i is what actuator i does per unit. With four actuators that do not
-// depend on each other the matrix B is inverted. With more, the shortest of all commands that make a wrench is taken,
-// each as a share of its range: W B^T (B W B^T)^-1 w with the squares of the ranges in W. Without W a weak actuator of
+// The wrench is linear in the commands: column i is the wrench of actuator i per unit. With four independent
+// actuators the matrix B is inverted. With more, the shortest of all commands that make a wrench is taken, each as a
+// share of its range. That is W B^T (B W B^T)^-1 w with the squares of the ranges in W. Without W a weak actuator of
 // another unit would have to do most of the work.
 
 #include "touchdown/estimation/base/vehicle_model.h"
@@ -102,7 +102,7 @@ Eigen::Vector3d HoverTurn(const VehicleModel& model) {
       const Actuator& actuator = model.actuators[static_cast<std::size_t>(i)];
       const double level = allocation.Shares()(i) * model.HoverThrust();
       const double room = std::max(0.0, std::min(level - actuator.min, actuator.max - level));
-      // About one axis alone: the moment that takes has parts about the others.
+      // About one axis alone: the moment for it has parts about the others.
       const double per_turn =
           std::abs(allocation.commands_of_wrench.row(i).tail<3>().dot(inertia_B.col(axis)));
       if (per_turn > 0.0) turn(axis) = std::min(turn(axis), room / per_turn);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Angles read off an attitude quaternion. Yaw is the heading of the body x axis projected to the
-// horizontal plane (the yaw of the paper's eq. 22 with its numerator read as wz + xy).
+// Angles from an attitude quaternion. Yaw is the heading of the body x axis projected to the
+// horizontal plane. It is the yaw of the paper's eq. 22 with its numerator read as wz + xy.
 
 #include "touchdown/estimation/base/vehicle_state.h"
 

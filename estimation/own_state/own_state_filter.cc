@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Bookkeeping of the own-state filter: inputs in, time order, replay, status. The history is a ring
-// of inputs with the state after each; an input that belongs before others is put in its place and
-// all from there on is processed again. Between two inputs the state is carried by the IMU sample
-// whose interval they lie in, the next one in the history, so that a measurement between two
-// samples splits the later one's interval. A measurement ahead of the IMU is carried to by the last sample
-// and processed again when its own sample has come. Corrections are in own_state_update.cc.
+// of inputs with the state after each. An input that is older than others is put in its place, and
+// all from there on is processed again. Between two inputs the state is propagated by the IMU
+// sample whose interval they lie in, which is the next one in the history. So a measurement between
+// two samples splits the later one's interval. For a measurement ahead of the IMU, the last sample
+// propagates the state. It is processed again when its own sample has come. Corrections are in
+// own_state_update.cc.
 
 #include "touchdown/estimation/own_state/own_state_filter.h"
 
@@ -144,7 +145,7 @@ OwnUpdate OwnStateFilter::Add(const Input& added) {
 }
 
 OwnUpdate OwnStateFilter::Insert(const Input& added) {
-  // Behind all that is not newer; an IMU sample before measurements of its own time stamp.
+  // After all that is not newer. An IMU sample goes before measurements of its own time stamp.
   int place = size_;
   while (place > 0 && (input(place - 1).t > added.t ||
                        (added.kind == Kind::kImu && place > 1 && input(place - 1).t == added.t &&
@@ -162,7 +163,7 @@ OwnUpdate OwnStateFilter::Insert(const Input& added) {
   }
   const bool full = size_ == static_cast<int>(inputs_.size());
   if (full) {
-    if (place == 1) {  // only the oldest state would be before it, and it has to give way
+    if (place == 1) {  // only the oldest state would be before it, and that is dropped
       ++too_old_;
       return OwnUpdate::kTooOld;
     }
@@ -174,8 +175,8 @@ OwnUpdate OwnStateFilter::Insert(const Input& added) {
   input(place) = added;
   ++size_;
 
-  // A measurement that waited for this IMU sample, or that this one splits the interval of, was
-  // carried to with other readings: from the last IMU sample before on all is processed again.
+  // Measurements since the last IMU sample were propagated with other readings: they waited for
+  // this sample, or it splits their interval. All from that sample on is processed again.
   int from = place;
   if (added.kind == Kind::kImu) {
     while (from > 1 && input(from - 1).kind != Kind::kImu) --from;
@@ -195,7 +196,7 @@ OwnUpdate OwnStateFilter::Insert(const Input& added) {
 }
 
 OwnUpdate OwnStateFilter::Replay(int i) {
-  // The IMU sample whose interval holds what lies between input i - 1 and input i.
+  // The IMU sample whose interval holds the time between input i - 1 and input i.
   int next = i;
   while (next < size_ && input(next).kind != Kind::kImu) ++next;
   Snapshot& state = snapshot(i);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Strapdown propagation of the nominal state and of the error covariance, after J. Sola, Quaternion
 // kinematics for the error-state Kalman filter, arXiv:1711.02508, chapters 5 and 7 (local angular
-// error). Over a step the force acts at the attitude of the step's middle, so that the reading of
-// sim::Imu, made the same way, is undone exactly:
+// error). Over a step the force acts at the attitude of the step's middle. This inverts the reading
+// of sim::Imu exactly, which is made the same way. With f and w the readings less their biases:
 //   q' = q exp(w dt),  a = R(q exp(w dt / 2)) f + g,  v' = v + a dt,  p' = p + v dt + a dt^2 / 2
-// with f and w the readings less their biases. The Jacobian is that of these equations.
+// The Jacobian is that of these equations.
 
 #include "touchdown/estimation/own_state/own_state_model.h"
 

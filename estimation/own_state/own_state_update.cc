@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Corrections of the own-state filter: the start from a hover, and Kalman updates in Joseph form
-// behind a Mahalanobis gate, the error injected into the nominal state and the covariance turned to
-// the new attitude (J. Sola, arXiv:1711.02508, chapter 6, eq. 285 to 287).
-// The start levels the vehicle with the mean specific force of the hover and then makes that force
-// a Kalman update of a wide belief, so that the correlation of tilt and accelerometer bias, which a
-// hover cannot tell apart, is right from the first moment.
+// behind a Mahalanobis gate. The error is injected into the nominal state, and the covariance is
+// turned to the new attitude (J. Sola, arXiv:1711.02508, chapter 6, eq. 285 to 287). The start
+// levels the vehicle with the mean specific force of the hover. That force is then a Kalman update
+// of a wide belief. So the correlation of tilt and accelerometer bias, which a hover cannot
+// separate, is right from the first moment.
 
 #include <algorithm>
 #include <cmath>
@@ -92,8 +92,8 @@ OwnUpdate OwnStateFilter::Measure(const Input& measured, Snapshot& state) const 
     const bool reset =
         sensor == OwnSensor::kPosition && counts.gated_in_row >= options_.reset_after;
     if (!reset) return OwnUpdate::kGated;
-    // So many cannot all be outliers: the belief is what is wrong. Position from the fix, velocity
-    // as at a start; attitude and biases, which it says less about, stay.
+    // So many cannot all be outliers: the belief is wrong. Position comes from the fix, velocity as
+    // at a start. Attitude and biases stay: the fix says less about them.
     update = OwnUpdate::kReset;
     ++state.diagnostics.resets;
     OwnBelief& belief = state.belief;
@@ -154,8 +154,8 @@ OwnUpdate OwnStateFilter::Align(const ImuSample& sample) {
 
   Eigen::Matrix<double, 3, kOwnErrors> H;
   const Eigen::Vector3d expected = OwnHoverForce(state, &H);
-  // Taken as level already: of the force only the covariance is wanted here, and its length, which
-  // is the bias along the thrust axis.
+  // Level already: only the force's covariance is wanted here, and its length, which is the bias
+  // along the thrust axis.
   Update<3>(belief, f_B - expected, H, Eigen::Vector3d::Constant(options_.hover_acceleration),
             kNoGate);
   H.setZero();

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Bookkeeping of the pad filter: measurements in, time order, gating, restarts. A late measurement
-// is inserted at its own time: the state before the first newer one is restored and the newer ones
-// are processed again, so that the result is that of an ordered sequence. The Kalman updates
-// themselves are in pad_filter_update.cc.
+// is inserted at its own time. The state before the first newer one is restored, and the newer ones
+// are processed again. So the result is that of an ordered sequence. The Kalman updates themselves
+// are in pad_filter_update.cc.
 
 #include "touchdown/estimation/pad/pad_filter.h"
 
@@ -16,8 +16,8 @@
 namespace touchdown::estimation {
 namespace {
 
-// Heading in W of the pad's x axis, known to be horizontal in W, from its direction in B's x-y
-// plane: the component along z_B is what makes it horizontal.
+// Heading in W of the pad's x axis from its direction in B's x-y plane. The axis is horizontal in
+// W, which gives its component along z_B.
 double PadYawInWorld(const Eigen::Quaterniond& q_WB, double yaw_BP) {
   const Eigen::Matrix3d R_WB = q_WB.toRotationMatrix();
   Eigen::Vector3d x_P_B(std::cos(yaw_BP), std::sin(yaw_BP), 0.0);
@@ -165,7 +165,7 @@ PadUpdate PadFilter::Process(const Measurement& measurement, Snapshot& state) co
   if (!accepted) {
     ++(measurement.is_tag ? diagnostics.tag_gated : diagnostics.gps_gated);
     ++in_row;
-    // While tags guide, a GPS that disagrees with them is the one that is wrong.
+    // While tags guide, a GPS that disagrees with them is wrong.
     const bool may_restart =
         measurement.is_tag || measurement.t - diagnostics.last_tag_t > options_.gps_restart_silence;
     if (in_row < options_.restart_after || !may_restart) return PadUpdate::kGated;

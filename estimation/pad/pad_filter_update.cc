@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Kalman updates of the pad filter: Joseph form, Mahalanobis gate, and the changes between the
-// Cartesian start and the model's own state.
-// The paper's measurement is [Px, Py, phi] (eq. 11): far away phi is the direction between fixes
-// that lie significantly apart, near it is the tags' heading. Its words leave open how; the chord's
-// heading is that of its middle, so its variance is widened by what the heading's own noise does
-// in half the chord's time.
+// Cartesian start and the model's own state. The paper's measurement is [Px, Py, phi] (eq. 11). Far
+// away phi is the direction between fixes that lie significantly apart; near the pad it is the
+// tags' heading. The paper does not say how. The chord's heading is that of its middle, so its
+// variance is widened by the heading's own noise in half the chord's time.
 
 #include <algorithm>
 #include <cmath>
@@ -148,7 +147,7 @@ bool PadFilter::UpdateTag(const Measurement& measurement, Snapshot& state) const
                 options_.turn_rate_prior * options_.turn_rate_prior);
     return true;
   }
-  // Heading read off the motion cannot tell forward from backward; the tag can.
+  // The motion's heading does not distinguish forward from backward; the tag does.
   PadBelief candidate = belief;
   if (std::abs(WrapAngle(measurement.yaw - candidate.mean(3))) > 0.5 * std::numbers::pi)
     TurnAround(candidate);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Motions of the pad (the paper's eq. 10 made explicit) in closed form. The coordinated turn is
-// integrated as a chord, dt V sinc(omega dt / 2) in the direction phi + omega dt / 2, which has no
-// singularity at omega = 0; sinc and its derivative switch to their series there. The process noise
-// is the integral of Phi Qc Phi' along the nonlinear motion by three-point Gauss-Legendre
-// quadrature: exact for the polynomials (up to s^4) that a straight motion gives, and always
-// positive semidefinite.
+// integrated as a chord, dt V sinc(omega dt / 2) in the direction phi + omega dt / 2. The chord has
+// no singularity at omega = 0; sinc and its derivative use their series there. The process noise is
+// the integral of Phi Qc Phi' along the nonlinear motion, by three-point Gauss-Legendre quadrature.
+// It is exact for the polynomials (up to s^4) of a straight motion, and always positive
+// semidefinite.
 
 #include "touchdown/estimation/pad/pad_motion_model.h"
 

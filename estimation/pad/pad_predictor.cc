@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Prediction of the pad from one belief. A turn rate that is not known would bend the far future
-// for nothing, so it is shrunk by its signal to noise ratio (the linear minimum mean square error
-// estimate of a turn rate whose prior variance is its own square). The predicted circle keeps its
-// closed form and its exact derivatives; the covariance is that of the unshrunk model.
+// Prediction of the pad from one belief. An uncertain turn rate would bend the far future for
+// nothing, so it is shrunk by its signal to noise ratio. This is the linear minimum mean square
+// error estimate of a turn rate whose prior variance is its own square. The predicted circle keeps
+// its closed form and its exact derivatives. The covariance is that of the unshrunk model.
 
 #include "touchdown/estimation/pad/pad_predictor.h"
 

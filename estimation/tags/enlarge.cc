@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Catmull-Rom interpolation (R. Keys, "Cubic convolution interpolation for digital image
 // processing", 1981, a = -1/2), first along columns, then along rows. New pixel centres lie a
-// quarter of an old pixel to either side of an old centre, so that two sets of four weights do; the
-// border is continued by its last pixel.
+// quarter of an old pixel to either side of an old centre, so two sets of four weights are enough.
+// The last pixel continues the border.
 
 #include "estimation/tags/enlarge.h"
 

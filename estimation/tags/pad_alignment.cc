@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Direct alignment of the printed sheet with the image (B. Lucas and T. Kanade, 1981; S. Baker and I. Matthews,
-// "Lucas-Kanade 20 years on", 2004): Gauss-Newton on the grey levels, I = gain * model + offset, with Huber's weights.
-// The unknowns are the six of the pose, gain and offset. The first blur is wide, and finds its way from farther. The
-// second one is the camera's own. If motion has blurred the image, it is the one of a few that explains it best. The
-// model of a pixel is the sheet's mean over what the pixel sees of it: four rectangles along the pad's axes that have
-// the variances of the pixel's quarters, projected.
+// "Lucas-Kanade 20 years on", 2004): Gauss-Newton on the grey levels, I = gain * model + offset, with Huber's
+// weights. The unknowns are the six of the pose, gain and offset. The first blur is wide, and converges from farther.
+// The second one is the camera's own. If motion has blurred the image, it is the best fit of a few. The model of a
+// pixel is the sheet's mean over what the pixel sees of it. That is four rectangles along the pad's axes with the
+// variances of the pixel's projected quarters.
 
 #include "touchdown/estimation/tags/pad_alignment.h"
 
@@ -185,7 +185,7 @@ PadAlignment::Sums PadAlignment::SumsAt(const State& state, double blur) {
       const double residual = state.gain * m[0] + state.offset - level;
       const double weight =
           state.sigma > 0.0 ? std::min(1.0, kHuber * state.sigma / std::abs(residual)) : 1.0;
-      // When the pose moves the point that this pixel sees, its level moves on in the image.
+      // When the pose moves the point that this pixel sees, its level moves in the image.
       const Eigen::Vector3d ray((left_ + u + 0.5 - camera_.cx) / camera_.focal,
                                 (top_ + v + 0.5 - camera_.cy) / camera_.focal, 1.0);
       const double depth = to_plane / normal_C.dot(ray);

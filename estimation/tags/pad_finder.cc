@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A pose that may as well be its mirror image is not aligned: the sheet could settle in the wrong
-// one, and would then claim to be sure.
+// A pose is not aligned if its mirror image is as likely. The sheet could converge to the wrong
+// one, with a small covariance.
 
 #include "touchdown/estimation/tags/pad_finder.h"
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Least squares over SE(3) of the corners' distances in the image, by Levenberg and Marquardt's
 // method (K. Madsen, H. Nielsen and O. Tingleff, Methods for Non-linear Least Squares Problems,
-// 2004, alg. 3.16), from the homography's pose and from the mirrored one; the lower cost wins. The
-// corners' noise: the mean of a scaled inverse chi-squared law with corner_sigma beforehand (A.
-// Gelman et al., Bayesian Data Analysis, section 2.6), so that one tag, which has two residuals more
-// than unknowns, does not claim a noise of zero. The covariance is that of the mixture of both
-// poses, about the one chosen.
+// 2004, alg. 3.16). It starts from the homography's pose and from the mirrored one; the lower cost
+// wins. The corners' noise is the mean of a scaled inverse chi-squared law with corner_sigma as
+// prior (A. Gelman et al., Bayesian Data Analysis, section 2.6). So one tag, which has two
+// residuals more than unknowns, does not give a noise of zero. The covariance is that of the
+// mixture of both poses, about the one chosen.
 
 #include "touchdown/estimation/tags/pad_pose.h"
 
@@ -128,7 +128,7 @@ struct Minima {
 Minima SolveBoth(const Problem& problem, const PoseCP& start) {
   Minima minima{Minimise(problem, start), Minimise(problem, MirroredPose(problem.corners, start))};
   if (minima.best.found) {
-    // From where the first came to rest, the mirrored guess is a better one.
+    // From the first minimum the mirrored guess is a better one.
     const Solution again = Minimise(problem, MirroredPose(problem.corners, minima.best.pose));
     if (again.found && (!minima.other.found || again.sums.squares < minima.other.sums.squares)) {
       minima.other = again;

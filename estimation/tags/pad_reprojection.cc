@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pinhole projection of a plane's points with its derivatives, the homography by the normalised
-// direct linear transformation (R. Hartley and A. Zisserman, Multiple View Geometry, alg. 4.2), its
-// decomposition H ~ [r1 r2 p], and the mirrored pose: under weak perspective along the unit vector
-// d, the image only depends on the first two columns of R across d, which (1 - 2 d d^T) R diag(1, 1,
-// -1) leaves as they are (D. Oberkampf et al., "Iterative pose estimation using coplanar feature
-// points", 1996).
+// Pinhole projection of a plane's points with its derivatives, the homography, its decomposition H
+// ~ [r1 r2 p], and the mirrored pose. The homography comes from the normalised direct linear
+// transformation (R. Hartley and A. Zisserman, Multiple View Geometry, alg. 4.2). Under weak
+// perspective along the unit vector d, the image only depends on the first two columns of R across
+// d. (1 - 2 d d^T) R diag(1, 1, -1) leaves these unchanged (D. Oberkampf et al., "Iterative pose
+// estimation using coplanar feature points", 1996).
 
 #include "touchdown/estimation/tags/pad_reprojection.h"
 
@@ -122,8 +122,8 @@ NormalEquations Assemble(const PadNormal& normal, const PoseCP& pose) {
   const double weight = 1.0 / (normal.sigma * normal.sigma);
   NormalEquations sums;
   sums.in_front = true;
-  // A normal that points away would have the same components across: its distance is that of a
-  // right angle at least.
+  // A normal that points away would have the same components across. Its distance counts as that of
+  // a right angle at least.
   sums.squares = weight * residual.offset.squaredNorm();
   const double along = pose.R.col(2).dot(normal.z_P_C);
   if (along < 0.0) sums.squares = weight * (1.0 + along * along);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Cells are 50 mm (outer tags) and 18.75 mm (centre tag) wide and begin at multiples of 1.25 mm
-// from the sheet's edge: with texels of 1.25 mm, 1024 of them along a side, no edge is blurred or
-// moved by the sampling. A power of two also spares the renderer a resampling of its own.
+// from the sheet's edge. So with texels of 1.25 mm, 1024 of them along a side, sampling does not
+// blur or move an edge. A power of two also spares the renderer a resampling.
 
 #include "estimation/tags/pad_sheet.h"
 

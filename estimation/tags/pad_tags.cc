@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Layout of the pad's markers: large ones, which reach far, around a small one, which is still whole
-// in the image of a camera close above it.
+// Layout of the pad's markers. Large ones can be seen from afar. They surround a small one, which
+// still fits in the image of a camera close above it.
 
 #include "estimation/tags/pad_tags.h"
 

@@ -6,8 +6,8 @@
 
 namespace touchdown::estimation {
 
-/// Cells along the side of a printed TAG36H11 marker: the white ring, and the black square within
-/// it, whose side is what a tag's side means.
+/// Cells along the side of a printed TAG36H11 marker: with the white ring, and of the black square
+/// within it. A tag's side is the side of this square.
 inline constexpr int kTagCells = 10;
 inline constexpr int kTagBlackCells = 8;
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // libapriltag 3.3 (J. Wang and E. Olson, "AprilTag 2: efficient and robust fiducial detection",
 // 2016) for the family TAG36H11: no decimation, one thread, edges refined on the grey image.
-// Only the pad's five codes are looked for. They differ from each other, however they are turned,
-// in 11 bits or more, so that three wrong bits may be forgiven, as many as the library can: a random
-// square of 36 bits passes for a tag with probability 5 * 4 * 7807 / 2^36 = 2e-6. That, and
-// sharpening cells of one pixel harder than the library does by itself, lets tags be read down to 8
-// pixels a side. The library's corners follow (-1,1), (1,1), (1,-1), (-1,-1) of a tag whose y axis
-// points down, which is the order of PadTag::Corners().
+// Only the pad's five codes are searched for. They differ from each other, however they are turned,
+// in 11 bits or more. So three wrong bits, the library's most, may be forgiven. A random square of
+// 36 bits passes as a tag with probability 5 * 4 * 7807 / 2^36 = 2e-6. Cells of one pixel are also
+// sharpened harder than the library does by itself. Both let tags be read down to 8 pixels a side.
+// The library's corners follow (-1,1), (1,1), (1,-1), (-1,-1) of a tag whose y axis points down,
+// which is the order of PadTag::Corners().
 
 #include "touchdown/estimation/tags/tag_detector.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Is the covariance of OwnStateFilter honest? Monte Carlo on flights with accelerations and turns,
-// every error drawn from the filter's own model: the sum of the normalised errors squared of n runs
-// is chi-squared with n times the state's size.
+// Tests the consistency of OwnStateFilter's covariance by Monte Carlo, on flights with
+// accelerations and turns. Every error is drawn from the filter's own model. The sum of the
+// normalised errors squared of n runs is then chi-squared with n times the state's size.
 #include <string>
 
 #include <gtest/gtest.h>
@@ -62,7 +62,8 @@ TEST_P(OwnConsistency, NeesInsideItsBand) {
   }
 }
 
-// From a hover the start is found, not drawn: tilt from the force, so that it errs with the bias.
+// From a hover the start is found, not drawn: tilt comes from the force, so its error follows the
+// bias.
 TEST(OwnStateFilter, StartFromAHoverIsConsistent) {
   double tilt_and_bias = 0.0;
   double state = 0.0;

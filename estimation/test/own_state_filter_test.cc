@@ -43,13 +43,13 @@ TEST(OwnStateFilter, StartsByItselfFromAHover) {
   const VehicleState state = filter.Estimate();
   EXPECT_LT(LogRotation(state.q_WB.conjugate() * q_WB).norm(), 1e-6);
   EXPECT_LT((state.p_WB - Eigen::Vector3d(1.0, 2.0, 3.0)).norm(), 1e-9);
-  // Tilt is known but for what the bias of the accelerometer hides.
+  // Tilt is known except for the part that the accelerometer's bias hides.
   const double tilt = std::sqrt(filter.belief().cov(kAttitudeError, kAttitudeError));
   EXPECT_NEAR(tilt, std::hypot(0.05, 0.05) / kGravity, 1e-3);
 }
 
 TEST(OwnStateFilter, FindsTheBiases) {
-  // Turned and accelerated, a bias shows within 20 s to what its walk of that time leaves.
+  // With turns and accelerations, a bias is known within 20 s up to its random walk of that time.
   double accelerometer2 = 0.0;
   double gyro2 = 0.0;
   const int runs = 20;

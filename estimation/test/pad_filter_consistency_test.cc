@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Is the filter's covariance honest? Monte Carlo on pads drawn from the turn-rate model itself:
-// the sum of the normalised errors squared of n runs is chi-squared with n times the state's size.
+// Tests the consistency of the filter's covariance by Monte Carlo, on pads drawn from the turn-rate
+// model. The sum of the normalised errors squared of n runs is then chi-squared with n times the
+// state's size.
 #include <cmath>
 #include <random>
 #include <string>
@@ -59,7 +60,7 @@ Nees MonteCarlo(double sigma, bool tags, int runs) {
   return nees;
 }
 
-/// Of a thousand honest filters one is outside. `over` is overconfidence that is allowed.
+/// One of a thousand consistent filters is outside. `over` is the allowed overconfidence.
 void ExpectInsideBand(double mean, int degrees, double over = 0.0) {
   const boost::math::chi_squared law(degrees);
   EXPECT_GT(mean, quantile(law, 0.0005) / degrees);
@@ -77,7 +78,7 @@ TEST_P(Consistency, NeesInsideItsBandAtGoodGps) {
   RecordProperty("predicted", std::to_string(nees.predicted));
   ExpectInsideBand(nees.state, nees.degrees);
   ExpectInsideBand(nees.position, 2 * nees.runs);
-  // A prediction is linear in the belief: 4 % too sure of itself in the mean of 4800 runs.
+  // A prediction is linear in the belief: its covariance is 4 % too small in 4800 runs.
   ExpectInsideBand(nees.predicted, 2 * nees.runs, 0.05);
 }
 

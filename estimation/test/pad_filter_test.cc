@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Behaviour of the pad filter on drives that are not drawn from its own model, and its handling of
+// Behaviour of the pad filter on drives that its own model does not produce, and its handling of
 // outliers, outages, late and broken measurements.
 #include "touchdown/estimation/pad/pad_filter.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A pad and a camera to test with, and what the camera would see.
+// A pad and a camera for tests, and the camera's images.
 #pragma once
 
 #include <cmath>
@@ -67,7 +67,7 @@ inline Vector6d ErrorOf(const PoseCP& truth, const PadPose& found) {
   return error;
 }
 
-/// What is printed at a point of the pad: 0 to 255; white between the tags.
+/// Grey level at a point of the pad: 0 to 255; white between the tags.
 inline double PadLevel(const Eigen::Vector2d& x_P) {
   for (const PadTag& tag : PadTags()) {
     const double cell = tag.side / kTagBlackCells;

@@ -121,7 +121,7 @@ TEST(PadPose, NoBiasAndHonestCovarianceOfTheWholePad) {
 }
 
 TEST(PadPose, NoBiasAndHonestCovarianceWithAKnownNormal) {
-  // One tag alone has few residuals to tell the noise by, and less than linear corners.
+  // One tag alone has few residuals to estimate the noise, and its corners are not linear.
   ExpectHonest(MonteCarlo({0}, 0.4, 1.2, 0.02, 1000), 1000, 1.1);
   ExpectHonest(MonteCarlo({2}, 1.0, 3.0, 0.02, 1000), 1000, 1.1);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What one evaluation of a landing problem costs, all derivatives included, by number of control
-// points: the unit that solve times are made of. And the boundary lift's share of a free arrival.
+// The time of one evaluation of a landing problem, all derivatives included, by number of control
+// points. Solve times are multiples of it. Also the boundary lift's share in a free arrival.
 
 #include <benchmark/benchmark.h>
 

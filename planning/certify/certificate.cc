@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The certificate of a plan: what is checked here is checked on the plan itself, after the solver
-// and whatever the solver said.
+// The certificate of a plan. All checks are on the plan itself, after the solver and whatever the
+// solver said.
 
 #include "touchdown/planning/certify/certificate.h"
 
@@ -21,7 +21,7 @@ double StartSpeed(const UniformBspline& curve) {
   return std::max(curve.AtKnot(0).v.norm(), (q.col(2) - q.col(1)).norm() / curve.interval());
 }
 
-/// Every segment's hull stays below what is left of a start beyond the limits.
+/// Whether every segment's hull stays below the recovery profile of a start beyond the limits.
 bool RecoveryProfileKept(const UniformBspline& curve, const Limits& limits) {
   const Eigen::Map<const ControlPoints> q = curve.control_points();
   const double h = curve.interval();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The whole-curve check: chords are so short that the curve leaves them by at most 2 mm (sagitta
-// <= a dt^2 / 8 with a the largest acceleration of the segment), and every cell that a chord passes
-// is visited. No sampling step can jump over a clipped corner.
+// The whole-curve check. Chords are so short that the curve leaves them by at most 2 mm: the
+// sagitta is <= a dt^2 / 8 with a the largest acceleration of the segment. Every cell that a chord
+// passes is visited. So no sampling step can jump over a clipped corner.
 
 #include "touchdown/planning/certify/curve_check.h"
 

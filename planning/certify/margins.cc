@@ -11,7 +11,7 @@ namespace touchdown::planning {
 namespace {
 
 constexpr double kSigmas = 3.0;
-// Between seeing a cell and passing it seconds later, however little is known of the own place in W [m].
+// Largest drift (1 sigma) between seeing a cell and passing it, whatever the error in W [m].
 constexpr double kDrift = 0.03;
 constexpr double kSeenFrom = 1.0;  // the last look at a cell beside the way is from so far [m]
 constexpr double kLeastTracking = 0.04;  // [m]

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The volume of the pad vehicle as a floor under plans: along the straight line between the predicted
-// pad at both ends of a plan.
+// The volume of the pad vehicle as a floor under plans. It lies along the straight line between the
+// pad's predictions at both ends of a plan.
 
 #include "planning/certify/pad_strip.h"
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The pair of a curve and its stop: the stop that is proven here is the one that is flown
-// (docs/safety.md). By induction nothing that stands is touched as long as observed-free cells are free
-// and the margins hold: a newer pair takes over before the stop, or the stop is flown.
+// (docs/safety.md). By induction the vehicle touches no standing obstacle as long as observed-free
+// cells are free and the margins hold. Either a newer pair takes over before the stop, or the stop
+// is flown.
 
 #include "touchdown/planning/certify/stored_stop.h"
 
@@ -80,7 +81,7 @@ PairProof ProvePair(double t_from, double t_handover, PairEnd ends, const Limits
     const Sweep sweep = SweepHull(curve, t_handover, t_end, start, hull, t_contact);
     return note(sweep);
   };
-  // Shortly before contact braking over the deck is the more dangerous end.
+  // Shortly before contact, braking over the deck is the more dangerous option.
   const bool arrives = ends == PairEnd::kContact || t_contact - t_handover < kLastStretch;
   if (arrives && touches_down()) {
     proof.proven = proof.contact = true;

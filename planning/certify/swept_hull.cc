@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The hull's tube through the observed-free cells. The hull at every tilt is a ball, and so is the hull
-// grown by its margins. Balls larger by kSweepRoom are placed along the curve, so that two after each other
-// hold what the hull sweeps between them; the cells that a ball touches are asked row by row, 64 along x at a time.
-// Most tubes are free with all that is around them: a box that holds several balls is asked first.
+// The hull's tube through the observed-free cells. The hull at every tilt is a ball, and so is the hull grown by its
+// margins. Balls larger by kSweepRoom are placed along the curve, so that two consecutive ones contain what the hull
+// sweeps between them. The cells that a ball touches are tested row by row, 64 along x at a time. The surroundings of
+// most tubes are free: a box that contains several balls is tested first.
 
 #include "touchdown/planning/certify/swept_hull.h"
 
@@ -30,8 +30,8 @@ constexpr double kLow =
     0.05;  // a foot of a vehicle that leans by 20 degrees hangs so much lower [m]
 constexpr double kLevel = 2e-3;  // rounding of floor and ceiling: kChordSagitta [m]
 
-/// Positions along a curve, which cost less from one piece of it than one by one; past its end at its end's
-/// velocity.
+/// Positions along a curve. A piece of it costs less as a whole than position by position. Past its end the curve
+/// goes on at its end's velocity.
 class Path {
  public:
   explicit Path(const UniformBspline& curve)
@@ -67,12 +67,11 @@ class Path {
   Eigen::Vector3d c0_, c1_, c2_, c3_;  // of the piece as a polynomial in u
 };
 
-/// The places since the last ball, of which two balls are to hold the hull.
+/// The positions since the last ball. Two balls must contain the hull at all of them.
 ///
-/// A hull of radius r midway between two balls that are g apart is in their union if these are larger by
-/// g^2 / 8 r, and one that is e off the line between them if they are larger by e more. Places that are no farther
-/// than e / 2 from the axis along which the way left the first ball are within e of that line, wherever on the way the
-/// second one is.
+/// A hull of radius r midway between two balls that are g apart is in their union if these are larger by g^2 / 8 r.
+/// One that is e off the line between them needs e more. The axis is the direction in which the path left the first
+/// ball. Positions within e / 2 of it are within e of that line, wherever on the path the second ball is.
 class Stretch {
  public:
   explicit Stretch(double radius) : radius_(radius) {}
@@ -83,12 +82,12 @@ class Stretch {
     away2_ = off2_ = 0.0;
   }
 
-  /// Adds a place, unless balls at the beginning and there would not hold what is between.
+  /// Adds a position, unless balls at the beginning and there would not contain what is between.
   bool Add(const Eigen::Vector3d& p) {
     const Eigen::Vector3d way = p - ball_;
     const double away2 = way.squaredNorm();
     if (away2 < away2_) return false;  // turned back: it was at its farthest just before
-    // So near the ball holds the hull alone, whatever the axis will be.
+    // So near, the first ball contains the hull alone, whatever the axis will be.
     if (away2 > kOwn * kOwn && axis_.isZero(0.0)) axis_ = way / std::sqrt(away2);
     const double off2 = std::max(off2_, (way - way.dot(axis_) * axis_).squaredNorm());
     if (2.0 * std::sqrt(off2) + away2 / (8.0 * radius_) > kSweepRoom) return false;
@@ -106,7 +105,7 @@ class Stretch {
   double away2_ = 0.0, off2_ = 0.0;                 // largest, of the places since the ball
 };
 
-/// So fast a curve may be anywhere, and past its end [m/s].
+/// Largest speed that the curve may have anywhere, and past its end [m/s].
 double FastestLeg(const UniformBspline& curve) {
   const Eigen::Map<const ControlPoints> q = curve.control_points();
   double longest2 = 0.0;
@@ -186,7 +185,7 @@ class Tube {
  private:
   int Index(double x) const { return static_cast<int>(std::floor(x / map_.resolution())); }
 
-  /// All cells that the ball may touch, but for those that are ground.
+  /// All cells that the ball may touch, except those that are ground.
   CellBox BoxAround(const Eigen::Vector3d& p) const {
     const CellIndex low(Index(p.x() - radius_), Index(p.y() - radius_),
                         std::max(Index(p.z() - radius_), first_above_ground_));
@@ -194,7 +193,7 @@ class Tube {
     return {low, last + CellIndex::Ones()};
   }
 
-  /// The box's rows can be asked for whole.
+  /// The box's rows can be read as a whole.
   bool HasRows(const CellBox& box) const {
     return box.high.x() - box.low.x() <= 64 && map_.InWindow(box.low) &&
            map_.InWindow(box.high - CellIndex::Ones());
@@ -308,9 +307,8 @@ class Tube {
   Deck start_deck_;                                      // below the start, when it was there
 };
 
-/// Feet no more than `below` the deck [m], and close over it sinking [m/s] no faster than they may touch it, as far as
-/// the hull may be over it.
-/// A start that is so close already need not.
+/// Whether the feet are no more than `below` the deck [m] as far as the hull may be over it. Close over it they may
+/// sink [m/s] no faster than they may touch it. A start that is so close already is exempt.
 bool AboveDeck(const HullSpace& hull, const Eigen::Vector3d& p, double t, double sinks,
                double below, const Eigen::Vector3d& start) {
   if (hull.pad == nullptr || p.z() >= start.z() - kRounding) return true;
@@ -322,8 +320,8 @@ bool AboveDeck(const HullSpace& hull, const Eigen::Vector3d& p, double t, double
   return DistanceBeside(deck, p) > hull.radius() + PadOutline::kSigmas * deck.sigma;
 }
 
-/// Between floor and ceiling; a vehicle that starts beyond one of them does not go farther. Where the deck may be
-/// touched it is the floor itself.
+/// Whether p is between floor and ceiling. A vehicle that starts beyond one of them must not go farther. Where the
+/// deck may be touched it is the floor itself.
 bool LevelKept(const FreeSpace& space, const Eigen::Vector3d& p, const Eigen::Vector3d& start,
                bool may_touch) {
   const double ceiling = std::max(space.ceiling, start.z());
@@ -341,7 +339,7 @@ Sweep SweepHull(const UniformBspline& curve, double t_from, double t_to, const H
   Sweep sweep;
   Tube tube(hull, start);
   Path path(curve), ahead(curve);
-  // Of what is thinner than its room two balls of that room hold as much at least.
+  // A hull thinner than kSweepRoom counts as half of it: two such balls contain as much at least.
   const double radius = std::max(hull.radius(), 0.5 * kSweepRoom);
   Stretch stretch(radius);
   Eigen::Vector3d before = start.p_W;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Cells that are not observed free, grown by the hull: rows of 63 cells in a word, grown along x step by
-// step, once for each width of the ball, and laid over the rows that the ball reaches.
+// Cells that are not observed free, grown by the hull. Rows of 63 cells are in a word. They are
+// grown along x step by step, once for each width of the ball, and combined over the rows that the
+// ball reaches.
 
 #include "touchdown/planning/certify/unseen_zone.h"
 
@@ -77,7 +78,7 @@ void UnseenZone::Build(const HullSpace& hull, const Eigen::Vector3d& start_W, do
   }
   const std::uint64_t columns = (~std::uint64_t{0} >> (64 - rows)) << first;
   for (std::uint64_t& bits : closed_) bits &= columns;
-  // Where the hull is already it may be, however the lattice rounds that.
+  // Where the hull is already it may be, whatever the rounding of the lattice.
   closed_[RowOf(kReach, kReach)] &= ~(std::uint64_t{1} << kReach);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A cell close above or below is out of the image, wherever the camera is turned. From farther away, lower or
-// higher it is in it.
+// A cell close above or below is out of the image, wherever the camera points. From farther away, lower or higher it
+// is in the image.
 
 #include "planning/certify/vantage.h"
 

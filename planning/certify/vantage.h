@@ -8,8 +8,7 @@
 
 namespace touchdown::planning {
 
-/// Places near a vehicle at rest from which a cell is better in the forward camera's sight than from where it
-/// is.
+/// Positions near a vehicle at rest from which the forward camera sees a cell better than from its own.
 class Vantages {
  public:
   /// Of a vehicle at p_WB that does not see place_W, both in W [m]. It leans against `pull_W` [m/s^2], and the
@@ -29,8 +28,8 @@ class Vantages {
   std::size_t size_ = 0;
 };
 
-/// How far a place is above or below the middle of the image of a level-mounted camera at p_WB that is turned to
-/// it, on a vehicle that leans against `pull_W` [rad].
+/// How far a place is above or below the middle of the image of a level-mounted camera at p_WB that is turned to it
+/// [rad]. The vehicle leans against `pull_W`.
 double OffSight(const Eigen::Vector3d& place_W, const Eigen::Vector3d& p_WB,
                 const Eigen::Vector3d& pull_W) noexcept;
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A hash table of blocks whose nodes lie in one piece of memory, one behind the other: to keep what a
-// window forgets costs neither an allocation nor a copy of what is kept already.
+// A hash table of blocks whose nodes lie one after the other in one piece of memory. Storing what a
+// window forgets then needs no allocation, and copies nothing that is stored already.
 
 #include "touchdown/planning/map/cell_blocks.h"
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A ray enters every cell but its first through one face. The faces of one axis are crossed at equal steps of the other
-// two coordinates. So the cells behind them are found axis by axis with two additions each, none waiting for a
-// comparison. The order along the ray, which costs a traversal a branch per cell, does not matter to votes.
-// Coordinates are in fixed point, of 2^-40 cells in a window of 2^22 cells: over the longest ray the cells are those of
-// a ray displaced by less than 1e-9 cells. Each is shifted so that its whole cells are where the address has them. A
-// vote is one store, two are computed at a time. Rays are clipped to the window first: no cell needs a test.
+// A ray enters every cell except its first through one face. The faces of one axis are crossed at equal steps of the
+// other two coordinates. So the cells behind them are found axis by axis with two additions each, and no comparison.
+// The order along the ray, which costs a traversal a branch per cell, does not matter to votes. Coordinates are in
+// fixed point, of 2^-40 cells in a window of 2^22 cells. Over the longest ray the cells are those of a ray displaced
+// by less than 1e-9 cells. Each is shifted so that its whole cells are where the address has them. A vote is one
+// store, and two are computed at a time. Rays are first clipped to the window, so no cell needs a test.
 
 #include "touchdown/planning/map/frame_votes.h"
 
@@ -59,7 +59,7 @@ inline FrameVotes::Track FrameVotes::MakeTrack(const Ray& ray, int axis, int min
   // Without a step the ray may be so steep that none could be held.
   Track track = {static_cast<std::int64_t>(at * one_),
                  steps > 0 ? static_cast<std::int64_t>(by * one_) : 0};
-  // A coordinate stays between those of both ends, whatever rounding does.
+  // A coordinate stays between those of both ends, whatever the rounding.
   const auto [near, far] = std::minmax(first_[minor], ray.last[minor]);
   const std::int64_t lowest = static_cast<std::int64_t>(near) << point_;
   const std::int64_t highest = (static_cast<std::int64_t>(far + 1) << point_) - 1;
@@ -83,8 +83,8 @@ inline void FrameVotes::MissBehindFaces(const Ray& ray) {
       votes_.data() + (static_cast<std::int64_t>(first_[kAxis] + ray.step[kAxis]) << shift_[kAxis]);
   const int point = point_;
   const std::uint64_t bits_a = bits_[kA], bits_b = bits_[kB];
-  // The first face alone: then pairs that begin with it or with the second, so that an odd one out
-  // costs no branch, which would be foreseen half of the time.
+  // The first face alone, then pairs that begin with it or with the second. So an odd number of
+  // faces needs no branch, which would be predicted only half of the time.
   plane[(Unsigned(on_a.at) >> point & bits_a) + (Unsigned(on_b.at) >> point & bits_b)] = kMiss;
   const std::int64_t odd = -(faces & 1);
   Pair at_a = Steps(on_a.at + (on_a.by & odd), on_a.by);
@@ -120,7 +120,7 @@ void FrameVotes::AddRay(const Eigen::Vector3d& end) {
   low_ = low_.cwiseMin(ray.last);
   high_ = high_.cwiseMax(ray.last + Eigen::Vector3i::Ones());
   if (ends_within) {
-    // The face crossed last leads into the end cell: nothing is said of what is behind it.
+    // The face crossed last leads into the end cell. What is behind it gets no vote.
     int final_axis = -1;
     double latest = -1.0;
     for (int c = 0; c < 3; ++c) {

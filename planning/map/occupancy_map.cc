@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A rolling window of log-odds cells, addressed modulo its power-of-two size so that moving it
 // copies nothing. Log-odds are kept in steps of 1/16 in one byte. Inflation is incremental: every
-// cell holds the number of occupied cells whose ball covers it, so that one flip costs one ball and
-// a query one load. Fusion as in A. Hornung et al., "OctoMap", Autonomous Robots 2013, section 3:
-// rays clear, end points hit, one update per cell and frame in which hits win. Votes are collected
-// first (frame_votes.h) and applied row by row.
+// cell holds the number of occupied cells whose ball covers it. So one flip costs one ball, and a
+// query one load. Fusion as in A. Hornung et al., "OctoMap", Autonomous Robots 2013, section 3.
+// Rays clear, end points hit, and each frame updates a cell once, in which hits win. Votes are
+// collected first (frame_votes.h) and applied row by row.
 
 #include "touchdown/planning/map/occupancy_map.h"
 
@@ -242,7 +242,7 @@ int OccupancyMap::RangeOf(const CellIndex& cell, const Eigen::Vector3d& eye) con
 
 void OccupancyMap::ApplyMissToHit(const CellIndex& cell, const Eigen::Vector3d& eye) {
   Cell value = cells_[Address(cell)];
-  // What may have been the pad has moved on with it; any other hit is outweighed by a better look only.
+  // What may have been the pad has moved on with it. Any other hit needs a better look.
   const bool better = value.doubtful || RangeOf(cell, eye) < value.hit_range ||
                       (CentreOf(cell) - eye).norm() <= sharp_;
   if (!better) return;
@@ -271,7 +271,7 @@ void OccupancyMap::ApplyReturn(std::uint8_t vote, const CellIndex& cell, const E
   Set(cell, value);
   if (!value.doubtful) return;
   if (doubts_.size() == doubts_.capacity()) return MakeCertain(cell, false);  // no room: it blocks
-  // The cell's centre will stand for the return, which was anywhere in it.
+  // The cell's centre will represent the return, which was anywhere in it.
   const double offset = 0.5 * options_.resolution;
   doubts_.push_back({t, cell, ToleranceAt((CentreOf(cell) - eye).norm()) + offset});
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Moving the window of the rolling map: what leaves is put in memory and forgotten while its ball can
-// still be taken back; what enters takes over addresses of what left, and its inflation is counted
-// anew from the obstacles that stay.
+// Moving the window of the rolling map. Cells that leave are put in memory and forgotten while
+// their ball can still be subtracted. Cells that enter take over addresses of cells that left.
+// Their inflation is counted anew from the obstacles that stay.
 
 #include <algorithm>
 #include <bit>
@@ -67,7 +67,7 @@ void OccupancyMap::MoveWindow(const CellIndex& origin, CellBlocks* memory) {
   }
 }
 
-/// A cell that leaves. Of its ball only what stays has to be taken back.
+/// A cell that leaves. Of its ball only the part that stays has to be subtracted.
 void OccupancyMap::Forget(const CellIndex& cell, const CellBox& stays, CellBlocks* memory) {
   Cell& stored = cells_[Address(cell)];
   if (memory != nullptr && stored.changed && !stored.doubtful) {

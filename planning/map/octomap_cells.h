@@ -14,7 +14,7 @@ struct OccupiedCells {
   std::vector<CellIndex> cells;
 };
 
-/// Reads an OctoMap file of either format and of any resolution; what the tree holds in one large leaf is as many cells.
+/// Reads an OctoMap file of either format and of any resolution. A large leaf of the tree counts as the cells in it.
 /// @throws std::invalid_argument that says what is wrong: no such file, mangled, more than five million cells.
 OccupiedCells ReadOccupiedCells(std::istream& in);
 

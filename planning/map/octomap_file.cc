@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The head is text: a first line that names the format, then lines "id OcTree", "size <nodes>",
-// "res <metres>" in any order, comments, and "data". Behind it come the nodes, depth first.
+// The head is text. Its first line names the format. Then come lines "id OcTree", "size <nodes>",
+// "res <metres>" in any order, comments, and "data". The nodes follow, depth first.
 // .ot: each node has its log-odds (float) and a byte with a bit per child.
 // .bt: each inner node has two bits per child: none, free leaf, occupied leaf, or inner node.
 // As octomap 1.9 writes them (octomap.github.io, AbstractOcTree and OcTreeBaseImpl).

@@ -41,15 +41,16 @@ void CopyCells(const octomap::OcTree& tree, const octomap::OcTreeNode* node, con
   }
 }
 
-// As OctoMap's own write and writeBinary, which talk on stderr while they write.
+// As OctoMap's own write and writeBinary, which print to stderr.
 void WriteHead(MapFormat format, const octomap::OcTree& tree, std::ostream* out) {
   *out << (format == MapFormat::kBinary ? kOctomapBinaryHead : kOctomapLogOddsHead)
        << "\nid OcTree\nsize " << tree.size() << "\nres " << tree.getResolution() << "\ndata\n";
 }
 
 /// The leaves of a tree that are free or occupied. OctoMap's binary format calls every cell free
-/// that is not occupied; one that was hit, and then passed, is neither, and must not come back as
-/// observed free space. The leaves are copied, as OctoMap aborts when a node's last child is deleted.
+/// that is not occupied. A cell that was hit, and then passed, is neither. It must not come back as
+/// observed free space. The leaves are copied, as OctoMap aborts when a node's last child is
+/// deleted.
 class SureTree : public octomap::OcTree {
  public:
   explicit SureTree(const octomap::OcTree& from) : OcTree(from.getResolution()), from_(from) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Resampling goes down the octree of the new cells: a node over which the file says one thing is a leaf, so that
-// large free space costs little, and only at its borders single cells are looked at.
+// Resampling descends the octree of the new cells. A node over which the file has one value is a
+// leaf. So large free space costs little, and only at its borders single cells are tested.
 #include "planning/map/octomap_tree.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A block is filled from the octree when it is first touched and knows better from then on; Write brings the blocks
-// back.
+// A block is filled from the octree when it is first touched, and is more recent from then on. Write copies the
+// blocks back.
 
 #include "touchdown/planning/map/persistent_map.h"
 

@@ -18,8 +18,8 @@ inline bool InTree(const CellIndex& cell) {
   return (cell.array() >= -kKeyOffset).all() && (cell.array() < kKeyOffset).all();
 }
 
-/// What a persistent map knows from a file: an octree (OctoMap). A library that is built without OctoMap has one that
-/// stays empty (no_octomap.cc).
+/// What a persistent map knows from a file: an octree (OctoMap). In a library that is built without OctoMap it stays
+/// empty (no_octomap.cc).
 class PriorTree {
  public:
   explicit PriorTree(const OccupancyMapOptions& options);

@@ -27,7 +27,7 @@ double PlateauTime(double length, double v0, double cruise, double a) {
   const double ramp_length = (top + v0) / 2.0 * std::abs(top - v0) / a + top * top / (2.0 * a);
   if (ramp_length <= length) return ramps + (length - ramp_length) / top;
   // No plateau: a peak speed v with (v^2 - v0^2)/2a + v^2/2a = length. A start too fast for that
-  // overshoots; the time to stop is what counts then.
+  // overshoots; then the time to stop counts.
   const double peak = std::sqrt(a * length + 0.5 * v0 * v0);
   return peak >= v0 ? (peak - v0) / a + peak / a : 2.0 * v0 / a;
 }
@@ -70,7 +70,7 @@ double GuessDuration(const SplineState& start, double t0, const estimation::PadP
                      const EndpointTarget& target, const Limits& limits, double detour) noexcept {
   const double T = GuessAtShare(start, t0, pad, target, limits, detour, kCruiseShare);
   if (std::isfinite(T)) return T;
-  // A fast pad leaves no room for comfort; the certificate decides whether it can be caught.
+  // A fast pad leaves no reserve; the certificate decides whether it can be caught.
   return GuessAtShare(start, t0, pad, target, limits, detour, kFastCruiseShare);
 }
 

@@ -215,8 +215,8 @@ void LandingProblem::Guess(Eigen::VectorXd* y) const {
   if (view_->free_interval()) (*y)[y->size() - 1] = context_.interval;
 }
 
-// What is left of the previous curve without the quintic between its own ends is put on the quintic
-// between the new ones, which the view's lift adds.
+// The difference of the previous curve from the quintic between its own ends. The view's lift adds
+// the quintic between the new ends.
 void LandingProblem::WarmGuess(const UniformBspline& previous, Eigen::VectorXd* y) {
   Guess(y);
   const solvers::AffineLift& lift = view_->lift();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Landings that no scenario would ask for, in which every part of every term has something to do.
+// Landings that no scenario has, in which every part of every term acts.
 
 #include "planning/problem/random_context.h"
 

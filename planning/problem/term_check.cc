@@ -46,7 +46,7 @@ class Bench {
     problem_.set_t0(context.t0);
     problem_.set_interval(context.interval);
     Add(entry, kind.hard, control_points);
-    // The metric of a term alone may be singular, and what is singular whitens badly.
+    // The metric of a term alone may be singular, and then the whitening is poor.
     if (kind.view == CheckedView::kWhitened) {
       const TermRegistry terms = StandardTerms();
       Add(FindTerm(terms, "smoothness"), false, control_points);
@@ -179,7 +179,7 @@ class Bench {
   ViewEvaluation at_;
 };
 
-/// The larger of two errors; one that is no number is the worst.
+/// The larger of two errors; NaN is the worst.
 double Worse(double a, double b) { return std::isnan(b) ? HUGE_VAL : std::max(a, b); }
 
 void KeepWorst(const solvers::DerivativeErrors& errors, TermCheckRow* row) {
@@ -198,7 +198,7 @@ TermCheckRow CheckKind(const TermEntry& entry, TermCheckRow row, const TermCheck
     Bench bench(entry, row, options.control_points, random);
     const solvers::LossBounds bounds = bench.term().bounds();
     row.has_edge = std::isinf(bounds.lo) != std::isinf(bounds.hi);
-    // In the problem's own variables: what a lift leaves of a term may be rounding alone.
+    // In the problem's own variables: with a lift, what remains of a term may be rounding alone.
     row.claims_convex = bench.term().info().convex && !row.hard &&
                         row.arrival == ArrivalMode::kFixed && row.view == CheckedView::kFull;
     VectorXd y = bench.RandomPoint();

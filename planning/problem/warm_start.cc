@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Quasi-interpolation by values and second derivatives: at a knot of a uniform cubic B-spline
-// p - h^2/6 p'' is the control point above it (p = (Q_- + 4 Q + Q_+)/6, h^2 p'' = Q_- - 2 Q + Q_+).
-// It takes a spline on the same knots back exactly and is of fourth order elsewhere. The two
-// outermost control points follow from the end velocities.
+// Quasi-interpolation by values and second derivatives. At a knot of a uniform cubic B-spline p -
+// h^2/6 p'' is the control point above it (p = (Q_- + 4 Q + Q_+)/6, h^2 p'' = Q_- - 2 Q + Q_+). It
+// reproduces a spline on the same knots exactly and is of fourth order elsewhere. The two outermost
+// control points follow from the end velocities.
 
 #include "planning/problem/warm_start.h"
 

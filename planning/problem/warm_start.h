@@ -5,10 +5,10 @@
 
 namespace touchdown::planning {
 
-/// The rest of `previous` from `t0` on as a spline with `segments` segments that takes `duration`:
-/// the start of the next solve, after View::Restrict. Times are stretched evenly, so that the path
-/// stays; with the previous number of segments, t0 and duration the control points come back as
-/// they were. t0 is clamped to the previous curve; past its end the result stands there. Throws
+/// The rest of `previous` from `t0` on as a spline with `segments` segments that takes `duration`.
+/// It is the start of the next solve, after View::Restrict. Times are stretched evenly, so that the
+/// path stays. With the previous number of segments, t0 and duration the control points stay the
+/// same. t0 is clamped to the previous curve; past its end the result stands there. Throws
 /// std::invalid_argument unless segments >= 1 and duration is positive and finite. Allocates.
 UniformBspline ShiftedSpline(const UniformBspline& previous, double t0, double duration,
                              int segments);
@@ -18,7 +18,7 @@ UniformBspline ShiftedSpline(const UniformBspline& previous, double t0, double d
 void ShiftedControlPoints(const UniformBspline& previous, double t0, double duration,
                           Eigen::Ref<ControlPoints> points);
 
-/// The curve moved so that it starts and ends in the given states: what is missing at the ends is
+/// The curve moved so that it starts and ends in the given states. The differences at the ends are
 /// spread over it as a quintic, so that a small step at an end makes no jolt beside it. Allocates.
 UniformBspline WithEnds(const UniformBspline& curve, const SplineState& start,
                         const SplineState& end);

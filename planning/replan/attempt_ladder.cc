@@ -34,7 +34,7 @@ AttemptDecision Next(const Case& c, void (*change)(const Case& c, Attempt* attem
   return decision;
 }
 
-/// Once more a little later: a pad that brakes is not met with what was promised before.
+/// Again a little later: a pad that brakes is not met at the promised arrival.
 void LandLater(const Case& c, Attempt* attempt) {
   if (c.facts.arrival == ArrivalMode::kFree && attempt->duration >= c.facts.min_duration) {
     attempt->arrival = ArrivalMode::kFree;
@@ -63,7 +63,7 @@ struct Rule {
 };
 
 constexpr std::array kRules = {
-    // Before a contact nothing is put off but this once.
+    // Before a contact, only this is postponed, once.
     Rule{[](const Case& c) { return c.facts.lands_soon && c.first(); },
          [](const Case& c) { return Next(c, LandLater); }},
     Rule{[](const Case& c) { return c.facts.lands_soon; },

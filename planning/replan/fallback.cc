@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The steps of the ladder below a plan (fallback_ladder.h). Each is proven as a pair like any plan: the committed curve with a newer
-// stop, a way to rest that is wanted, a way out of an obstacle's zone. Below them is the stop that was
-// stored with the committed pair: it is flown without being asked.
+// The steps of the ladder below a plan (fallback_ladder.h). Each is proven as a pair like any plan:
+// the committed curve with a newer stop, a wanted rest, an escape from an obstacle's zone. Below
+// them is the stop that was stored with the committed pair. It is flown without further questions.
 
 #include "planning/replan/fallback.h"
 
@@ -46,7 +46,7 @@ Fallback::Landing Fallback::LookAtLanding(const FlightPair& committed, double t0
   if (hull.pad == nullptr) return Landing::kHolds;
   const double t_contact = ContactTime(committed.curve, t0, hull);
   if (!std::isfinite(t_contact)) return Landing::kMisses;
-  // What is not seen any more was proven once; what is seen to block is a reason to stop.
+  // Cells that are not seen any more were proven once; cells seen to block are a reason to stop.
   if (SweepAgain(committed, t0, hull, true).unseen_W) return Landing::kMisses;
   return TouchesSoftly(committed.curve, t_contact, 1.0, hull) ? Landing::kHolds : Landing::kHard;
 }
@@ -123,7 +123,7 @@ void Fallback::FlyStop(const FlightPair& committed, double t0, const HullSpace& 
       certificate.clearance = std::numeric_limits<double>::quiet_NaN();
   certificate.stops_in_observed_space = committed.proven && !result->from_odometry &&
                                         LookAtLanding(committed, t0, hull) != Landing::kMisses;
-  // A landing is looked at against the deck, or not at all.
+  // A landing is checked against the deck, or not at all.
   const bool looked_at = hull.space != nullptr && (hull.pad != nullptr || !committed.Lands());
   if (looked_at) {
     const Sweep now = SweepAgain(committed, t0, hull, false);

@@ -6,20 +6,20 @@
 
 namespace touchdown::planning {
 
-/// What is flown where no new plan could be certified: a proven pair, but for RisesUnproven. Each call fills
-/// curve, stop and certificate of `result` if it succeeds. Does not allocate.
+/// What is flown where no new plan could be certified: a proven pair, except RisesUnproven. Each call fills curve,
+/// stop and certificate of `result` if it succeeds. Does not allocate.
 class Fallback {
  public:
   explicit Fallback(const Limits& limits);
 
-  /// What the pull of this step leaves of the limits.
+  /// The limits that the pull of this step leaves.
   void SetLimits(const Limits& limits) { limits_ = limits; }
 
   /// The curve of the committed pair goes on from t0 to t_stop [s], with a newer stop.
   bool GoesOn(const FlightPair& committed, double t0, double t_stop, const HullSpace& hull,
               ReplanResult* result);
 
-  /// Around a stop.
+  /// The clearance around a stop.
   enum class Room {
     kPlanClearance,  ///< the clearance of plans is kept, or what is within it is only left
     kHullClearance,  ///< the pair is proven, and no more
@@ -35,18 +35,18 @@ class Fallback {
   /// From rest among cells that block to the nearest place that does not.
   bool Escapes(double t0, const SplineState& start, const HullSpace& hull, ReplanResult* result);
 
-  /// The stop that was stored: it was proven when it was made, and needs no more. Where the vehicle is not on it,
-  /// or it is a landing that misses, nothing is proven.
+  /// The stored stop. It was proven when it was made, and needs no more. Nothing is proven if the vehicle is not on
+  /// it, or if it is a landing that misses.
   static void FlyStop(const FlightPair& committed, double t0, const HullSpace& hull,
                       ReplanResult* result);
 
   /// The start itself leads into an obstacle: arriving later does not change that.
   bool NoTimeToBrake(const SplineState& start, const FreeSpace& space);
 
-  /// The vehicle is at rest at t0 [s], and so it remains on the committed pair.
+  /// The vehicle is at rest at t0 [s], and stays at rest on the committed pair.
   static bool AtRest(const FlightPair& committed, double t0);
 
-  /// What has become of a pair that was to end in contact.
+  /// The state of a pair that was to end in contact.
   enum class Landing {
     kHolds,  ///< or it was none
     kHard,   ///< the deck will be there, but not move along: the landing rule forbids it
@@ -55,7 +55,7 @@ class Fallback {
   static Landing LookAtLanding(const FlightPair& committed, double t0, const HullSpace& hull);
 
  private:
-  /// What ends the pair, from t0 on, in the map of today and with the hull alone.
+  /// Sweeps the end of the pair, from t0 on, on the present map and with the hull alone.
   static Sweep SweepAgain(const FlightPair& committed, double t0, const HullSpace& hull,
                           bool unseen_passes);
 

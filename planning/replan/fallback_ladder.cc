@@ -106,8 +106,8 @@ bool FallbackLadder::Stops(const FallbackFacts& facts, const Eigen::Vector3d& sh
   return true;
 }
 
-/// A vehicle that has looked for long, and does not see a cell that the path needs, goes to where it sees the cell
-/// better. It does not go low, where the pad may come by, nor from where a landing goes on.
+/// A vehicle that has looked for long without seeing a cell that the path needs goes to where it sees the cell
+/// better. It does not go low, where the pad may pass, nor from where a landing goes on.
 bool FallbackLadder::StepsAside(const FallbackFacts& facts, ReplanResult* result) {
   if (!result->unseen_W || facts.t0 - facts.committed->Last().t_end() < kLookTime) return false;
   memory_.looks_at_W.reset();

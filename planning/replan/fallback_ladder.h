@@ -14,7 +14,7 @@
 
 namespace touchdown::planning {
 
-/// What the ladder below a plan goes by.
+/// The inputs of the ladder below a plan.
 struct FallbackFacts {
   const FlightPair* committed = nullptr;
   bool planned = false;  ///< the committed curve is a plan to the pad
@@ -26,34 +26,35 @@ struct FallbackFacts {
   Eigen::Vector3d pull_W = Eigen::Vector3d::Zero();  ///< steady force over the mass [m/s^2]
 };
 
-/// What the ladder came to.
+/// The result of the ladder.
 struct [[nodiscard]] Fallen {
   bool commits = false;  ///< the result's pair takes over; else what is committed goes on
   bool on_plan = false;  ///< what is flown then, new or not, is a plan to the pad
 };
 
-/// Whether the committed pair is about to make a contact that is still wanted. Nothing is put off then: the pair was
+/// Whether the committed pair will soon make a contact that is still wanted. Nothing is postponed then: the pair was
 /// proven until there.
 bool LandsSoon(const FlightPair& committed, double t0, const EndpointTarget& endpoint,
                const HullSpace& hull);
 
-/// What is flown if no plan was certified, the first of this that is proven:
+/// What is flown if no plan was certified. The first of these that is proven:
 /// 1. the committed landing;
 /// 2. the committed curve with a newer stop;
 /// 3. a way out, from rest;
 /// 4. a better place to look from;
 /// 5. a rest;
 /// 6. after a landing that misses: up, proven or not; else the stored stop.
+///
 /// It remembers what a rest was for. Does not allocate.
 class FallbackLadder {
  public:
   explicit FallbackLadder(const Limits& limits) : fallback_(limits) {}
 
-  /// What the pull of this step leaves of the limits.
+  /// The limits that the pull of this step leaves.
   void SetLimits(const Limits& limits) { fallback_.SetLimits(limits); }
 
-  /// Fills curve, stop, certificate, status, and what is told of the map. @pre `result` tells the reason, the cell that
-  /// was not seen, whether tracking is lost, and whether a plan may end in contact.
+  /// Fills curve, stop, certificate, status, and the map's findings. @pre `result` has the reason, the cell that was
+  /// not seen, whether tracking is lost, and whether a plan may end in contact.
   Fallen StepDown(const FallbackFacts& facts, ReplanResult* result);
 
   /// The caller asked for a rest, `climb` higher [m], or as much of that as a roof leaves.
@@ -67,7 +68,8 @@ class FallbackLadder {
     return fallback_.NoTimeToBrake(start, space);
   }
 
-  /// A vehicle that went to where a cell is in sight makes no plan before the cell is known, or no better place is left.
+  /// A vehicle that went to where a cell is in sight makes no plan until the cell is known or no better place is
+  /// left.
   bool StillLooks(const OccupancyMap& map, bool from_odometry);
 
   /// What a committed rest is for.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The curve and the guide past an obstacle pass it on different sides, or else the curve would be free.
-// A place on the guide is moved towards the curve until the obstacle is near, so that its half-spaces
-// are about this obstacle even where the guide keeps far off.
+// The curve and the guide past an obstacle pass it on different sides; otherwise the curve would be
+// free. A place on the guide is moved towards the curve until the obstacle is near. So its
+// half-spaces belong to this obstacle even where the guide keeps far off.
 
 #include "planning/replan/pair_binder.h"
 

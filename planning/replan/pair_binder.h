@@ -14,9 +14,9 @@
 
 namespace touchdown::planning {
 
-/// Chooses the half-spaces {p, v} of the control points of a curve that is blocked. Points along a guide past what
-/// blocks it get the convex piece of free space around their place on the guide. Points beside it get the piece around
-/// their place on the curve. What was bound in one round stays bound in the next, around where the curve is then.
+/// Chooses the half-spaces {p, v} of the control points of a curve that is blocked. Points along a guide past the
+/// obstacle get the convex piece of free space around their place on the guide. Points beside it get the piece around
+/// their place on the curve. Points bound in one round stay bound in the next, around where the curve is then.
 class PairBinder {
  public:
   static constexpr int kMostControlPoints = 67;  ///< of a curve
@@ -27,8 +27,9 @@ class PairBinder {
   /// Nothing is bound any more. Throws std::invalid_argument for more than kMostControlPoints.
   void Begin(int control_points);
 
-  /// The first round of a way: its parts that have to be bound are, with what is beside them, and `more`, in
-  /// the time of the curve that the way follows. The control points are wanted on the way, in even steps of its time.
+  /// The first round of a way. It binds the parts of the way that have to be bound, what is beside them, and `more`,
+  /// in the time of the curve that the way follows. The control points are wanted on the way, in even steps of its
+  /// time.
   void Lead(const TimedWay& way, const BoundParts& more);
 
   /// A later round: the control points are wanted on this curve.
@@ -37,13 +38,12 @@ class PairBinder {
   /// What is bound now, in time on this curve. Does not allocate once `parts` has room for kMostControlPoints.
   void Remember(const UniformBspline& curve, BoundParts* parts) const;
 
-  /// Where the curve is blocked in `run`, its control points are wanted along the guide, which has one
-  /// point at least, as near to the curve as the obstacle allows.
+  /// Where the curve is blocked in `run`, its control points are wanted along the guide, as near to
+  /// the curve as the obstacle allows. The guide has at least one point.
   void Follow(const UniformBspline& curve, const BlockedRun& run, const GuidePath& guide,
               const FreeSpace& space);
 
-  /// The guide leads past a corner that the curve cuts between two control points in `run`: both get the
-  /// plane there.
+  /// The guide leads past a corner that the curve cuts between two control points in `run`. Both get the plane there.
   void AddCorner(const UniformBspline& curve, const BlockedRun& run, const GuidePath& guide,
                  const FreeSpace& space);
 

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One attempt at a plan, top to bottom:
 //   Pose    sets the problem's ends, or refuses them;
-//   Solve   without obstacles, which nearly always says how the plan looks;
+//   Solve   without obstacles, which nearly always shows the plan's shape;
 //   KeepWay, LayWay  lay a way past all that blocks that curve;
-//   Follow  binds control points to free space along the way, solves, binds what is still blocked, until the
-//           whole curve is clear;
+//   Follow  binds control points to free space along the way, solves, binds what is still blocked,
+//           until the whole curve is clear;
 //   Finish  certifies it.
-// Pairs are bound to the map of now at every attempt, so that none outlives the obstacle it was made for. What
-// lasts is the way: the committed curve is the first that is tried.
+//
+// Pairs are bound to the present map at every attempt, so that none outlives its obstacle. Only the way lasts: the
+// committed curve is the first that is tried.
 
 #include "planning/replan/plan_attempt.h"
 
@@ -26,7 +27,7 @@ namespace {
 constexpr double kRowTolerance = 2e-6;  // what backends leave of the equality rows, as a norm
 constexpr double kNoBound = std::numeric_limits<double>::infinity();
 
-/// Of the limits, the largest that a plan uses; that of a recovery is not told.
+/// The largest share of a limit that a plan uses; 1 for a recovery.
 double ShareOfLimits(const Certificate& certificate, const Limits& limits) {
   if (certificate.recovering) return 1.0;
   return std::max(certificate.speed_bound / limits.speed,
@@ -50,7 +51,7 @@ PlanAttempt::PlanAttempt(const ReplannerOptions& options, const solvers::Backend
   for (const TermEntry& entry : options.problem.terms) {
     if (entry.is_clearance || entry.is_limit) pressed_.push_back(entry.info.name);
   }
-  // Room for all that usually comes.
+  // Room for the usual sizes.
   const auto most_pairs = static_cast<std::size_t>(options.problem.max_pairs_per_point) *
                           static_cast<std::size_t>(kMostControlPoints);
   for (Candidate* candidate : {&best_, &other_}) {
@@ -117,7 +118,8 @@ ReplanReason PlanAttempt::Try(const AttemptRequest& request, ReplanResult* resul
   const ReplanReason found = FindAnew(request, warm, leads_around, result);
   aside.reset();
   if (holds(found) || !may_keep) return found;
-  // If no better plan is found, what holds is kept before a later arrival is tried.
+  // If no better plan is found, a committed plan that holds is kept before a later arrival is
+  // tried.
   const ReplanReason kept = KeepCommitted(request, result);
   return holds(kept) ? kept : found;
 }
@@ -128,7 +130,7 @@ ReplanReason PlanAttempt::FindAnew(const AttemptRequest& request, const UniformB
   Posed posed;
   ReplanReason reason = SolveWithoutPairs(request, request.segments, warm, &posed, &best_, result);
   if (reason != ReplanReason::kNone) return reason;
-  // So near that the first control point that is free comes too late to pass it.
+  // So near that the first free control point comes too late to pass it.
   const bool near = leads_around && !best_.blocked.empty() && !best_.blocked.front().at_start &&
                     best_.blocked.front().t_in - request.t0 <
                         options_.constants.near_obstacle * best_.pair.curve.interval();
@@ -173,10 +175,10 @@ ReplanReason PlanAttempt::SolveWithoutPairs(const AttemptRequest& request, int s
   return Solve(request, *posed, candidate, result);
 }
 
-/// The curve on shorter segments, before it is led past what is in its way. Where the arrival is fixed its
-/// optimum there is cheap, and a better start. Where it is free the solve would cost more than the rounds
-/// after it gain: there the curve is only interpolated, to within millimetres, so that the blocked runs
-/// stand. If no round can be solved then, the next attempt fixes the arrival.
+/// The curve on shorter segments, before it is led past obstacles. Where the arrival is fixed, its optimum there is
+/// cheap, and a better start. Where it is free, the solve would cost more than the rounds after it gain. There the
+/// curve is only interpolated, to within millimetres, so that the blocked runs stay valid. If no round can be solved
+/// then, the next attempt fixes the arrival.
 ReplanReason PlanAttempt::Refine(const AttemptRequest& request, Posed* posed, Candidate* candidate,
                                  ReplanResult* result) {
   first_curve_ = candidate->pair.curve;
@@ -186,7 +188,7 @@ ReplanReason PlanAttempt::Refine(const AttemptRequest& request, Posed* posed, Ca
     const ReplanReason reason =
         SolveWithoutPairs(request, request.near_segments, &first_curve_, posed, candidate, result);
     if (reason != ReplanReason::kSolverFailed) return reason;
-    // The coarse ones will have to do.
+    // The coarse ones are used.
     return SolveWithoutPairs(request, request.segments, &first_curve_, posed, candidate, result);
   }
   Pose(request, request.near_segments, posed);  // refused by the coarse problem, if at all
@@ -198,7 +200,7 @@ ReplanReason PlanAttempt::Refine(const AttemptRequest& request, Posed* posed, Ca
   return ReplanReason::kNone;
 }
 
-/// The committed way on the map of now, once an attempt.
+/// The committed way on the present map, once an attempt.
 void PlanAttempt::KeepWay(const AttemptRequest& request, ReplanResult* result) {
   if (std::exchange(kept_asked_, true)) return;
   if (!request.starts_on_previous || request.previous->t_end() <= request.t0) return;
@@ -210,7 +212,7 @@ void PlanAttempt::KeepWay(const AttemptRequest& request, ReplanResult* result) {
 ReplanReason PlanAttempt::LayWay(const AttemptRequest& request, const BlockedRun& span,
                                  double max_cost, ReplanResult* result) {
   StageTimer timer(&result->times.search, StageTimer::kWhileLogged);
-  // A way that nothing is left to follow would only be found again.
+  // A way for which no budget to follow it is left would only be found again.
   const int reserve = WorkBudget::kLeastEvaluations * WorkBudget::kSegment * segments_;
   const SearchStatus status =
       finder_.LeadPast(first_curve_, span, *request.space, &way_, reserve, max_cost);
@@ -222,8 +224,8 @@ ReplanReason PlanAttempt::LayWay(const AttemptRequest& request, const BlockedRun
   return way_.known() ? ReplanReason::kNone : ReplanReason::kSearchFailed;
 }
 
-/// The committed plan is the best that is known: its rest, bound as it was, but to the map of now, takes one
-/// solve while it holds. What has come to block it leads to further rounds.
+/// The committed plan is the best known. Its rest, bound as before, but to the present map, takes one solve while it
+/// holds. New obstacles on it need further rounds.
 ReplanReason PlanAttempt::KeepCommitted(const AttemptRequest& request, ReplanResult* result) {
   KeepWay(request, result);
   if (!kept_.known()) return ReplanReason::kCollisionRemains;
@@ -238,8 +240,8 @@ ReplanReason PlanAttempt::KeepCommitted(const AttemptRequest& request, ReplanRes
                 result);
 }
 
-/// One way leads past everything that is in the way, so that one detour does not lead into the next. The way
-/// around the first obstacle makes the difference: another way is another way around that.
+/// One way leads past all obstacles, so that one detour does not lead into the next. Ways differ in how they pass the
+/// first obstacle.
 ReplanReason PlanAttempt::TryWays(const AttemptRequest& asked, Posed* posed, ReplanResult* result) {
   AttemptRequest request = asked;
   if (!request.previous) posed->prepared->first_guess = posed->prepared->start.y;
@@ -255,7 +257,7 @@ ReplanReason PlanAttempt::TryWays(const AttemptRequest& asked, Posed* posed, Rep
     kept_.Bind({kept_.t0() + share * (span.t_in - request.t0),
                 kept_.t0() + share * (span.t_out - request.t0)});
   }
-  // Whose own way fails is led another one at once; a way that was searched for has to do, until a later arrival.
+  // If the committed way fails, another is tried at once. A way that was searched for is kept until a later arrival.
   const int rescues = keeps_side ? 2 : 1;
   double first_cost = kNoBound;
   for (int i = 0;; ++i) {
@@ -287,8 +289,8 @@ ReplanReason PlanAttempt::TryWays(const AttemptRequest& asked, Posed* posed, Rep
   return best_.reason;
 }
 
-/// The path around takes longer than the straight one: by its extra length at full speed. An arrival that is
-/// committed is not postponed like that.
+/// The path around takes longer than the straight one: by its extra length at full speed. A committed arrival is not
+/// postponed like that.
 void PlanAttempt::Postpone(const TimedWay& way, Posed* posed, AttemptRequest* request) {
   if (request->arrival == ArrivalMode::kFree) return;
   AttemptRequest later = *request;
@@ -307,9 +309,9 @@ void PlanAttempt::Postpone(const TimedWay& way, Posed* posed, AttemptRequest* re
   }
 }
 
-/// Binds control points along the way and solves, until the curve is clear, or hardly clearer than before. The
-/// first round binds what of the way needs it, and `more`; later ones what is still blocked. A plan that ends
-/// `latest` after the start [s] or later is none.
+/// Binds control points along the way and solves, until the curve is clear, or hardly clearer than before. The first
+/// round binds the parts of the way that need it, and `more`; later ones what is still blocked. A plan must end
+/// before `latest` after the start [s].
 ReplanReason PlanAttempt::Follow(const AttemptRequest& request, const TimedWay& way,
                                  const BoundParts& more, double latest, const Posed& posed,
                                  Candidate* candidate, ReplanResult* result) {
@@ -331,7 +333,7 @@ ReplanReason PlanAttempt::Follow(const AttemptRequest& request, const TimedWay& 
     const ReplanReason reason = Solve(request, posed, candidate, result);
     if (reason != ReplanReason::kNone) return reason;
     if (candidate->pair.curve.duration() > latest) return ReplanReason::kCollisionRemains;
-    // A blocked start alone is for the certificate: it may be an escape.
+    // If only the start is blocked, the certificate decides: it may be an escape.
     const auto& runs = candidate->blocked;
     const bool only_start = runs.size() == 1 && runs.front().at_start;
     if (runs.empty() || only_start) {
@@ -344,7 +346,7 @@ ReplanReason PlanAttempt::Follow(const AttemptRequest& request, const TimedWay& 
   return Finish(request, candidate, result);
 }
 
-/// What is blocked is led to the way, with a plane at the corner that is cut.
+/// Leads blocked parts to the way, with a plane at the corner that is cut.
 ReplanReason PlanAttempt::BindBlocked(const AttemptRequest& request, const TimedWay& way,
                                       const Candidate& candidate) {
   const UniformBspline& curve = candidate.pair.curve;
@@ -414,8 +416,7 @@ ReplanReason PlanAttempt::Solve(const AttemptRequest& request, const Posed& pose
   return ReplanReason::kNone;
 }
 
-/// Certifies a clear candidate; where only limits are exceeded, presses these harder and solves
-/// again.
+/// Certifies a clear candidate. If only limits are exceeded, raises their weights and solves again.
 ReplanReason PlanAttempt::KeepLimits(const AttemptRequest& request, const Posed& posed,
                                      Candidate* candidate, ReplanResult* result) {
   for (int round = 0;; ++round) {
@@ -429,7 +430,7 @@ ReplanReason PlanAttempt::KeepLimits(const AttemptRequest& request, const Posed&
         share > options_.constants.limit_far
             ? options_.constants.limit_growth * options_.constants.limit_growth
             : options_.constants.limit_growth;
-    // The last curve stands where the solver fails under the pressure.
+    // If the solver fails under the pressure, the last curve is kept.
     if (Solve(request, posed, candidate, result) != ReplanReason::kNone) return reason;
   }
 }
@@ -451,7 +452,8 @@ ReplanReason PlanAttempt::Finish(const AttemptRequest& request, Candidate* candi
   if (options_.problem.endpoint == EndpointMode::kExplicit) {
     certificate.endpoint_tolerance = kRowTolerance;
   }
-  // The certificate does not know every row: tilt, thrust and a user's own are the solver's word.
+  // The certificate does not check every row: for tilt, thrust and a user's own, the solver's claim
+  // counts.
   const bool rows_kept = candidate->solver.max_violation <= kRowTolerance;
   if (certificate.passed() && rows_kept) return ReplanReason::kNone;
   if (!certificate.clear && !certificate.escaping) {

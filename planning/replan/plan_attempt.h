@@ -19,7 +19,7 @@
 
 namespace touchdown::planning {
 
-/// What one attempt is made with.
+/// The inputs of one attempt.
 struct AttemptRequest {
   SplineState start;
   double t0 = 0.0;
@@ -43,9 +43,9 @@ struct AttemptRequest {
   AttemptLog* log = nullptr;  ///< filled if not null (allocates)
 };
 
-/// One attempt at a plan, in stages (plan_attempt.cc): pose the problem, solve it without obstacles, lay ways past
-/// what blocks that, follow each with pairs that are bound along it until the curve is clear, certify, and
-/// choose the cheapest that is certified. Against the side that is flown already another has to be much
+/// One attempt at a plan, in stages (plan_attempt.cc). It poses the problem, solves it without obstacles, and lays
+/// ways past what blocks that. It follows each with pairs that are bound along it until the curve is clear. It
+/// certifies, and chooses the cheapest that is certified. Another side than the one flown already has to be much
 /// cheaper. Keeps one prepared problem and backend per number of segments.
 class PlanAttempt {
  public:
@@ -63,17 +63,17 @@ class PlanAttempt {
     budget_.Refill(options_.max_work);
     spent_ = false;
   }
-  /// An attempt of this step ended for want of budget.
+  /// An attempt of this step ended because its budget was used up.
   bool spent() const { return spent_; }
   /// Of this step's budget.
   int work() const { return budget_.done(); }
 
-  /// Tries once; fills curve with its stop, certificate, pairs, guide paths, solver, counts and times of `result`
-  /// (adding to counts and times). Returns kNone when the certificate passed. With a backend that
-  /// does not allocate it does not either, once its buffers have grown.
+  /// Tries once. Fills curve with its stop, certificate, pairs, guide paths, solver, counts and times of `result`
+  /// (adding to counts and times). Returns kNone when the certificate passed. Does not allocate, once its buffers
+  /// have grown, if the backend does not.
   ReplanReason Run(const AttemptRequest& request, ReplanResult* result);
 
-  /// Of the plan that the last attempt tried [s]: as requested, or later where the way round took longer or
+  /// Duration of the plan that the last attempt tried [s]: as requested, or later where the way around took longer or
   /// the arrival was free.
   double duration() const { return duration_; }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Landing problems by number of segments, in steps of four, so that a plan of any duration finds one whose
-// segments are about as long as they should be.
+// Landing problems by number of segments, in steps of four. So for a plan of any duration there is
+// one whose segments are about as long as wanted.
 
 #include "planning/replan/prepared_problems.h"
 

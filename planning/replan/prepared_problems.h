@@ -14,8 +14,8 @@ namespace touchdown::planning {
 /// The options of the landing problems that a replanner with these options solves.
 LandingProblemOptions ProblemOptions(const ReplannerOptions& options, ArrivalMode arrival);
 
-/// Number of segments of a plan that takes so long [s] at these limits; each is at most this share of `longest`
-/// [m] at full speed, and of what that takes at 2.5 m/s.
+/// Number of segments of a plan with this duration [s] at these limits. A segment takes at most `share` of the time
+/// for `longest` [m] at full speed, or at 2.5 m/s if that is faster.
 int SegmentsFor(double duration, const Limits& limits, double share, double longest);
 
 /// A landing problem and its backend, to be solved again and again.
@@ -27,9 +27,9 @@ struct PreparedProblem {
   Eigen::VectorXd first_guess;                  // of the solves with pairs
 };
 
-/// One for every number of segments that SegmentsFor gives and every arrival that a replanner may ask for,
-/// made beforehand: refusals surface at once, and nothing is built in the middle of a flight. A free arrival
-/// falls back to a fixed one.
+/// One for every number of segments that SegmentsFor gives and every arrival that a replanner may ask for. They are
+/// made beforehand: refusals appear at once, and nothing is built in flight. A free arrival falls back to a fixed
+/// one.
 class PreparedProblems {
  public:
   /// Throws std::invalid_argument if the backend does not exist or cannot do what the options ask.

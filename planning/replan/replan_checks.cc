@@ -9,7 +9,7 @@ namespace touchdown::planning {
 
 namespace {
 
-// Beyond these a number is taken for a fault.
+// Numbers beyond these count as faults.
 constexpr double kFarthest = 1e6;  // [m]
 constexpr double kFastest = 1e3;   // [m/s]
 constexpr int kMostPairs = 1000;   // of a control point: each has its storage

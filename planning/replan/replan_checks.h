@@ -9,10 +9,9 @@ namespace touchdown::planning {
 /// Throws std::invalid_argument naming the first option out of its range, its value and the range.
 void Validate(const ReplannerOptions& options);
 
-// Each of these says in some words what is wrong, nullptr: nothing. They do not allocate.
+// Each returns what is wrong in some words, or nullptr. They do not allocate.
 
-/// The times and the vehicle's state can be used: finite, ordered, and no farther or faster than a vehicle
-/// gets.
+/// The times and the vehicle's state can be used: finite, ordered, and within a vehicle's possible range and speed.
 const char* WrongInState(const ReplanInput& input);
 
 /// The pad is known, and its state at the start can be used.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The replanning step: start from the committed trajectory (or from the vehicle where tracking lost
-// it), choose an arrival, try, re-time while limits or obstacles forbid, commit what is certified.
-// If nothing is, the ladder of fallback_ladder.h. What is committed is always a pair, a curve and its stop, so that
-// a step that has no answer needs none.
+// The replanning step. It starts from the committed trajectory (or from the vehicle where tracking lost it) and
+// chooses an arrival. It tries, re-times while limits or obstacles forbid, and commits what is certified. If nothing
+// is, it uses the ladder of fallback_ladder.h. What is committed is always a pair, a curve and its stop, so a step
+// without an answer is safe.
 
 #include "touchdown/planning/replan/replanner.h"
 
@@ -43,7 +43,7 @@ double DetourOf(const UniformBspline& curve, double from) {
 
 SplineState ToSpline(const FlatState& flat) { return {flat.p_WB, flat.v_WB, flat.a_WB}; }
 
-/// The deck that there is, below a pad that is known; nullptr: none.
+/// The deck below a known pad that has one; nullptr: none.
 const estimation::PadPrediction* DeckOf(const ReplanInput& input) {
   return input.pad != nullptr && input.pad->has_deck() ? input.pad : nullptr;
 }
@@ -75,7 +75,7 @@ class Replanner::Impl {
     result_.committed = true;
   }
 
-  /// A pair that comes after the older one's stop has begun comes too late: it does not start there.
+  /// A pair that comes after the older one's stop has begun is too late: it does not start there.
   void TakeOverAt(double t) {
     if (!result_.committed || t <= takes_over_) return;
     takes_over_ = t;
@@ -237,7 +237,7 @@ void Replanner::Impl::Begin(const ReplanInput& input) {
   for (solvers::TermCost& term : result_.solver.cost_by_term) term.cost = 0.0;
 }
 
-/// Without a usable state of the vehicle nothing can be decided: what is committed goes on, to its stop.
+/// Without a usable state of the vehicle nothing can be decided: the committed pair goes on, to its stop.
 const ReplanResult& Replanner::Impl::RefuseState(const ReplanInput& input, const char* wrong) {
   const double t0 = std::isfinite(input.t_start) ? input.t_start : next_.curve.t0();
   Fallback::FlyStop(next_, t0, HullSpace{}, &result_);
@@ -246,8 +246,8 @@ const ReplanResult& Replanner::Impl::RefuseState(const ReplanInput& input, const
   return result_;
 }
 
-/// A caller that asks less often than options_.reaction is taken to go on like that: else each plan would be flown
-/// into its stop.
+/// A caller that asks less often than options_.reaction is assumed to continue like that. Otherwise each plan would
+/// be flown into its stop.
 void Replanner::Impl::NoteAsked(double t_start) {
   const double since = asked_t_ ? t_start - *asked_t_ : 0.0;
   if (since <= kRestartAfter) reaction_ = std::max(reaction_, since);
@@ -265,7 +265,7 @@ SplineState Replanner::Impl::Start(const ReplanInput& input) {
           Eigen::Vector3d::Zero()};
 }
 
-/// The last answer must have taken over before the next is asked for: only one is ever pending.
+/// The last answer must have taken over before the next request: only one is ever pending.
 const char* Replanner::Impl::WrongInState(const ReplanInput& input) const {
   if (!stands_) throw std::invalid_argument("Replanner: a step is asked for before CommitHover");
   if (const char* wrong = planning::WrongInState(input)) return wrong;
@@ -319,7 +319,7 @@ const ReplanResult& Replanner::Impl::Replan(const ReplanInput& input, const Occu
   return Finish(fallback_.StepDown(FactsFor(input, start, hull), &result_), input.t_start);
 }
 
-/// They point to what is committed, and to `hull`.
+/// The facts point to the committed pair and to `hull`.
 FallbackFacts Replanner::Impl::FactsFor(const ReplanInput& input, const SplineState& start,
                                         const HullSpace& hull) const {
   FallbackFacts facts;
@@ -334,14 +334,14 @@ FallbackFacts Replanner::Impl::FactsFor(const ReplanInput& input, const SplineSt
   return facts;
 }
 
-/// Commits what the ladder came to, if that is new.
+/// Commits the ladder's result, if it is new.
 const ReplanResult& Replanner::Impl::Finish(const Fallen& fallen, double t0) {
   planned_before_ = fallen.on_plan;
   if (fallen.commits) Commit(t0);
   return result_;
 }
 
-/// What the stops of the steps to come need: the way on behind the pair's first part.
+/// The cells that the next steps' stops need: on the way beyond the pair's first part.
 std::optional<Eigen::Vector3d> Replanner::Impl::NeededNext(const ReplanInput& input,
                                                            const HullSpace& hull) const {
   const UniformBspline& curve = next_.curve;
@@ -365,8 +365,8 @@ const ReplanResult& Replanner::Impl::Rest(const ReplanInput& input, double climb
   return Finish(fallback_.Rest(FactsFor(input, start, hull), climb, &result_), input.t_start);
 }
 
-/// The first arrival from T on at which the plan's end is free, before the next attempt's would be, or T if
-/// there is none: a pad that passes an obstacle is met behind it.
+/// The first arrival from T on, and before the next attempt's, at which the plan's end is free; T if there is none.
+/// So a pad that passes an obstacle is met behind it.
 double Replanner::Impl::FirstFreeArrival(const ReplanInput& input, double T,
                                          const OccupancyMap& map) const {
   const FreeSpace space = Space(map);
@@ -378,8 +378,8 @@ double Replanner::Impl::FirstFreeArrival(const ReplanInput& input, double T,
   return T;
 }
 
-/// What is tried first, and what the ladder of attempts depends on. Out of reach: the fresh guess is longer than
-/// a plan may be.
+/// The first attempt, and the facts that the ladder of attempts depends on. Out of reach: the fresh guess is longer
+/// than a plan may be.
 Attempt Replanner::Impl::FirstAttempt(const ReplanInput& input, const SplineState& start,
                                       const FreeSpace& plain, AttemptFacts* facts) {
   StageTimer timer(&result_.times.predict, StageTimer::kWhileLogged);
@@ -393,21 +393,22 @@ Attempt Replanner::Impl::FirstAttempt(const ReplanInput& input, const SplineStat
   facts->arrival = options_.arrival;
   facts->min_duration = options_.min_duration;
   facts->max_duration = options_.max_duration;
-  // An arrival once promised is kept: guessing anew at every step would put it off for ever. What would be soon
-  // in the straight way need not be on a long way round.
+  // An arrival once promised is kept: a new guess at every step would postpone it for ever. An arrival that is soon
+  // on the straight way need not be on a long way around.
   const double left = next_.curve.t_end() - input.t_start;
   const bool on_plan = planned_before_ && !result_.from_odometry;
   const bool promised = on_plan && guess(DetourOf(next_.curve, input.t_start)) >
                                        options_.constants.retime_below * left;
-  // A vehicle that follows a pad needs no shorter plans than usual; the last ones before a contact are.
+  // A vehicle that follows a pad needs no shorter plans than usual. Only the last ones before a
+  // contact are shorter.
   const double shortest =
       input.endpoint.touches() ? options_.min_contact_duration : options_.min_duration;
   Attempt attempt;
   attempt.duration = std::clamp(promised ? left : facts->fresh, shortest, options_.max_duration);
-  // The prepared problems' free arrival has the usual bound below.
+  // The prepared problems' free arrival has the usual lower bound.
   const bool fixed = attempt.duration < options_.min_duration || facts->lands_soon;
   attempt.arrival = fixed ? ArrivalMode::kFixed : options_.arrival;
-  // A plan that led around what was not seen is followed by others that do: not by turns.
+  // A plan that led around unseen cells is followed by others that do: they must not alternate.
   const bool closes = around_unseen_ && on_plan && !facts->lands_soon;
   attempt.unseen_reach = closes ? options_.constants.unseen_reach : 0.0;
   return attempt;
@@ -421,7 +422,7 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
   if (!(facts.fresh <= options_.max_duration)) return ReplanReason::kPadUnreachable;
   const bool on_plan = planned_before_ && !result_.from_odometry;
   const double first = std::max(attempt.duration, facts.fresh);
-  // On a plan the next step first looks whether that holds.
+  // On a plan, the next step first checks whether it holds.
   if (resumes_ && !on_plan && !facts.lands_soon && !result_.from_odometry) attempt = *resumes_;
   attempt_.BeginStep();
   for (int tried = 1;; ++tried) {
@@ -441,7 +442,7 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
     }
     if (reason == ReplanReason::kCollisionRemains && fallback_.NoTimeToBrake(start, space))
       return reason;
-    // What is not seen yet may soon be: as long as it can, the committed curve goes on.
+    // Unseen cells may soon be seen: as long as it can, the committed curve goes on.
     if (reason == ReplanReason::kUnobserved && attempt.number == 0 && on_plan && !facts.at_rest &&
         !facts.lands_soon && fallback_.GoesOn(FactsFor(input, start, hull), &result_)) {
       return reason;
@@ -449,7 +450,7 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
     const AttemptDecision decision =
         NextAttempt(attempt, {reason, attempt_.duration()}, facts, options_.constants);
     if (attempt_.spent()) {
-      // A later attempt gets a whole budget in the next step; a first one had it, and is left behind.
+      // A later attempt gets a whole budget in the next step. A first one had it, and is given up.
       unfinished_ = tried > 1 ? attempt : decision.next;
       // A vehicle at rest that does not see a cell which the path needs may look from elsewhere (fallback_ladder.h).
       return facts.at_rest && result_.unseen_W ? ReplanReason::kUnobserved : reason;
@@ -459,7 +460,7 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
   }
 }
 
-/// @param first the first duration that was thought of [s].
+/// @param first the first guess of the duration [s].
 AttemptRequest Replanner::Impl::RequestFor(const ReplanInput& input, const SplineState& start,
                                            const Attempt& attempt, const AttemptFacts& facts,
                                            double first, const HullSpace& hull) {
@@ -490,7 +491,7 @@ AttemptRequest Replanner::Impl::RequestFor(const ReplanInput& input, const Splin
   request.previous = is_first && planned_before_ ? &next_.curve : nullptr;
   request.starts_on_previous = request.previous != nullptr && !result_.from_odometry;
   request.bound = &bound_;
-  // Shortly before contact nothing is kept: what was bound before would push the vehicle there.
+  // Shortly before contact nothing is kept: earlier pairs would push the vehicle there.
   const double left = next_.curve.t_end() - input.t_start;
   request.keeps = request.starts_on_previous &&
                   !(input.endpoint.leads_to_contact() && left < constants.near_contact);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The way that a path takes around an obstacle is the side on which it passes, where it crosses the
-// plane across the curve that is blocked there.
+// A path's way around an obstacle is the side on which it passes. The side is taken where the path
+// crosses the plane across the curve that is blocked there.
 
 #include "planning/search/barrier.h"
 

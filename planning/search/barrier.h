@@ -10,16 +10,17 @@
 
 namespace touchdown::planning {
 
-/// The half of the plane through `p` across `normal`: what lies on that `side` of it may not be
-/// crossed. Closes one way around an obstacle at p, so that the search finds another.
+/// The half of the plane through `p` across `normal` that lies on `side` of it must not be crossed.
+/// Closes one way around an obstacle at p, so that the search finds another.
 struct Barrier {
   Eigen::Vector3d p = Eigen::Vector3d::Zero();        ///< in W [m]
   Eigen::Vector3d normal = Eigen::Vector3d::UnitX();  ///< unit vector, along the way
   Eigen::Vector3d side = Eigen::Vector3d::UnitY();    ///< unit vector in the plane
 };
 
-/// Closes the way that a path takes around an obstacle, which a curve that heads through it passes with
-/// this state. None if the path passes too near to the state to tell a side, or there is no direction.
+/// Closes the way that a path takes around an obstacle. `through` is the state of a curve through
+/// the obstacle. None if the path passes too near to the state to determine a side, or there is no
+/// direction.
 std::optional<Barrier> CloseWay(std::span<const Eigen::Vector3d> path, const FlatState& through);
 
 /// Distance from the plane of the barrier, positive along its normal [m].

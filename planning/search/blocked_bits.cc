@@ -65,7 +65,7 @@ std::uint32_t BlockedBits::Around(const CellIndex& cell) {
   return around;
 }
 
-/// Of the cells of a row from `first` on, those over the pad: only within the strip's box need to be asked.
+/// The cells of a row from `first` on that are over the pad: only those within the strip's box need a test.
 std::uint64_t BlockedBits::OverPad(const CellIndex& first, int count) const {
   const OccupancyMap& map = *space_.map;
   const Eigen::Vector2d reach =
@@ -86,7 +86,7 @@ std::uint64_t BlockedBits::OverPad(const CellIndex& first, int count) const {
   return bits;
 }
 
-/// Of the cells of a row, those that belong to the barrier: only near its plane they need to be asked.
+/// The cells of a row that belong to the barrier: only those near its plane need a test.
 std::uint64_t BlockedBits::Of(const Barrier& barrier, const CellIndex& first, int count) const {
   const OccupancyMap& map = *space_.map;
   const double from = DistanceAlong(barrier, map.CentreOf(first));
@@ -123,7 +123,7 @@ bool BlockedBits::TooHigh(int z) const {
   return centre + 0.5 * map.resolution() > space_.ceiling + FreeSpace::kLevelRounding;
 }
 
-/// What FreeSpace::Blocked and the barriers say, with as much as possible said of whole rows.
+/// As FreeSpace::Blocked and the barriers, but for whole rows where possible.
 std::uint64_t BlockedBits::Make(int y, int z, int word) const {
   const OccupancyMap& map = *space_.map;
   const CellIndex first = map.origin() + CellIndex(word * kWord, y, z);

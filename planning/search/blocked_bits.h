@@ -10,14 +10,14 @@
 
 namespace touchdown::planning {
 
-/// The blocked cells of a window as bits, 64 along x to a word. A word is made when it is first asked for: a
-/// search asks for the same cell from up to 26 sides, and only where it comes.
+/// The blocked cells of a window as bits, 64 along x to a word. A word is made at its first use. A search needs the
+/// same cell from up to 26 sides, and only where it comes.
 class BlockedBits {
  public:
   /// Makes room for this map's window, which Begin does otherwise.
   void Reserve(const OccupancyMap& map);
 
-  /// From now on of this space and these barriers, which must outlive the calls of Word and Around. Allocates only
+  /// From now on for this space and these barriers, which must outlive the calls of Word and Around. Allocates only
   /// to grow to a high-water mark.
   void Begin(const FreeSpace& space, std::span<const Barrier> barriers);
 
@@ -38,8 +38,8 @@ class BlockedBits {
     return words_[i];
   }
 
-  /// The 3 x 3 x 3 cells around a cell, counted from the window's lowest one: bit
-  /// 9 (z + 1) + 3 (y + 1) + x + 1 for the cell at the offset (x, y, z). Out of the window: not set.
+  /// The 3 x 3 x 3 cells around a cell, counted from the window's lowest one. The cell at the offset
+  /// (x, y, z) has the bit 9 (z + 1) + 3 (y + 1) + x + 1. Out of the window: not set.
   std::uint32_t Around(const CellIndex& cell);
 
  private:

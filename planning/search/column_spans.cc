@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where a bit changes from one layer to the next a span begins or ends: layers that are alike cost nothing.
+// A span begins or ends where a bit changes from one layer to the next: equal layers cost nothing.
 
 #include "planning/search/column_spans.h"
 

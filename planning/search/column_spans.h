@@ -18,7 +18,7 @@ struct FreeSpan {
 };
 
 /// The free stretches of the columns of a window: most have one, from the floor to the ceiling. Made 64
-/// columns at a time, when one of them is first asked for.
+/// columns at a time, at the first use of one of them.
 class ColumnSpans {
  public:
   /// Of a column at most; those above count as blocked.
@@ -41,7 +41,7 @@ class ColumnSpans {
     return count_[static_cast<std::size_t>(y * size_.x() + x)];
   }
 
-  /// They count from the lowest to the highest. @pre id < Count(x, y), which was asked.
+  /// They count from the lowest to the highest. @pre id < Count(x, y), which was called before.
   const FreeSpan& At(int x, int y, int id) const {
     return spans_[static_cast<std::size_t>((id * size_.y() + y) * size_.x() + x)];
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Greedy convex decomposition of free space, after S. Liu et al., "Planning Dynamically Feasible
-// Trajectories for Quadrotors Using Safe Flight Corridors in 3-D Complex Environments", RA-L 2017,
-// about a point instead of a segment and with planes that the optimiser may lean on: the term
+// Trajectories for Quadrotors Using Safe Flight Corridors in 3-D Complex Environments", RA-L 2017.
+// Here it is about a point instead of a segment, and the optimiser may lean on the planes: the term
 // obstacle_pair is soft.
 
 #include "planning/search/corridor.h"
@@ -112,7 +112,7 @@ void Corridor::Bind(int control_point, const Vector3d& wanted, const FreeSpace& 
     const Vector3d v = (point - nearest.p).normalized();
     pairs->push_back({control_point, nearest.p, v});
     if (++bound == most) break;
-    // What lies beyond the plane is kept off by it.
+    // The plane also keeps off what lies beyond it.
     const double beyond = nearest.p.dot(v) + kRounding;
     std::erase_if(near_, [&](const Near& cell) { return cell.p.dot(v) <= beyond; });
   }

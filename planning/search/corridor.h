@@ -8,15 +8,16 @@
 
 namespace touchdown::planning {
 
-/// Half-spaces between a free point and the blocked cells around it: each {p, v} pair has its plane
-/// where the blocked cell nearest to the point, of those that no earlier pair keeps off, is nearest,
-/// across the line to it. Together they hold a convex piece of free space around the point.
+/// Half-spaces between a free point and the blocked cells around it. Each {p, v} pair takes the
+/// nearest blocked cell that no earlier pair keeps off. Its plane touches the cell where it is
+/// nearest to the point, across the line to it. Together they hold a convex piece of free space
+/// around the point.
 class Corridor {
  public:
   static constexpr double kReach = 0.6;  ///< cells farther from the point do not count [m]
 
-  /// The floor and the ceiling are kept off by `margin` [m] only: the pairs' planes lie
-  /// `clearance` - `margin` beyond them. Allocates its scratch memory.
+  /// Plans keep only `margin` [m] from the floor and the ceiling: the pairs' planes lie `clearance`
+  /// - `margin` beyond them. Allocates its scratch memory.
   Corridor(double clearance, double margin);
 
   /// Appends the pairs of one control point, at most `most` of them, the nearest first. A `point` in

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A* (P. Hart, N. Nilsson and B. Raphael 1968; eq. 16 of the paper) on the cells of the rolling
-// map. What is known of a cell is indexed by its position in the window; the number of the search
-// that it is from spares clearing it.
+// map. The data of a cell are indexed by its position in the window. They carry the number of their
+// search, so that they need not be cleared.
 
 #include "planning/search/grid_search.h"
 
@@ -70,7 +70,7 @@ class GridSearch::Queue {
     std::uint32_t address;
     bool operator>(const Node& other) const { return key > other.key; }
   };
-  // With four children a node: half the levels of a binary heap, and these are next to each other.
+  // Four children per node: half the levels of a binary heap, and the children are adjacent.
   boost::heap::d_ary_heap<Node, boost::heap::arity<4>, boost::heap::compare<std::greater<Node>>>
       nodes_;
   std::uint32_t order_ = 0;
@@ -130,7 +130,8 @@ float GridSearch::LatticeDistance(const CellIndex& a, const CellIndex& b) const 
          (hi - lo - slanted) + (up - cubic - slanted) * vertical_cost_;
 }
 
-/// Of cells equally far the one in the smallest cube around the centre, then the lowest along z, y and x.
+/// Of equally distant cells the one in the smallest cube around the centre, then the lowest along
+/// z, y and x.
 bool GridSearch::NearestFree(const FreeSpace& space, CellIndex* cell) {
   if (!space.Blocked(*cell)) return true;
   const OccupancyMap& map = *space.map;

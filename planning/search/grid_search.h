@@ -30,20 +30,21 @@ enum class SearchStatus {
 };
 
 /// A* on the 26-neighbour lattice of the map's free cells (eq. 16: f = g + greed h, h the exact
-/// distance on the empty lattice). A step costs sqrt(dx^2 + dy^2 + (vertical_cost dz)^2): going around is
-/// preferred to going over, where a forward camera sees little. A blocked end is first moved to the
-/// nearest free cell within `kEndSearchRadius`. Deterministic: ties are broken by the order of
-/// insertion. Its arrays have the size of the map's window and are kept between searches.
+/// distance on the empty lattice). A step costs sqrt(dx^2 + dy^2 + (vertical_cost dz)^2): going
+/// around is preferred to going over, where a forward camera sees little. A blocked end is first
+/// moved to the nearest free cell within `kEndSearchRadius`. Deterministic: ties are broken by the
+/// order of insertion. Its arrays have the size of the map's window and are kept between searches.
 class GridSearch {
  public:
   static constexpr double kEndSearchRadius = 1.5;  ///< [m]
 
-  /// With `greed` > 1 cells near the goal come first: a path costs at most so many times the least, and
-  /// is found after far fewer expansions. A step from a cell beside a blocked one costs `tight_cost`
-  /// times as much: wide passages are preferred. Throws std::invalid_argument unless all are >= 1.
+  /// With `greed` > 1 cells near the goal come first. A path then costs at most this many times the
+  /// least, and is found after far fewer expansions. A step from a cell beside a blocked one costs
+  /// `tight_cost` times as much: wide passages are preferred. Throws std::invalid_argument unless
+  /// all are >= 1.
   explicit GridSearch(double vertical_cost = 1.0, double greed = 1.0, double tight_cost = 1.0);
   ~GridSearch();
-  /// What was moved from may only be assigned to or destroyed.
+  /// A moved-from instance may only be assigned to or destroyed.
   GridSearch(GridSearch&&) noexcept;
   GridSearch& operator=(GridSearch&&) noexcept;
 

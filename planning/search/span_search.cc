@@ -33,7 +33,7 @@ constexpr std::array<Step, 8> kSteps = {{{1, 0, 1.0f},
                                          {-1, 1, kDiagonal},
                                          {-1, -1, kDiagonal}}};
 constexpr int kSelf = kSteps.size();  // no step at all
-constexpr float kStepsOfCell = 4.0f;  // of f, that the queue tells apart
+constexpr float kStepsOfCell = 4.0f;  // of f, that the queue distinguishes
 constexpr double kGateMargin = 1.0;   // of a way from the edges of a gate that has room [cells]
 
 /// A span that can be reached from another.

@@ -17,24 +17,24 @@ struct WayCost {
   double tight = 1.0;     ///< a metre beside something: wide passages are preferred
 };
 
-/// A* on the free spans of the map's columns (column_spans.h) instead of its cells: a wall that a vehicle
-/// looks along is filled in two dimensions, not in three. A node is a span, with the height at which it was
-/// reached; a step to the next column keeps its height as long as that column is free there. The
-/// heights of the way that was found are straightened in the end. Not exact: a span remembers only the
-/// cheapest height. Deterministic. Its arrays have the size of the map's window and are kept between
-/// searches.
+/// A* on the free spans of the map's columns (column_spans.h) instead of its cells. A wall ahead of the vehicle is
+/// searched in two dimensions, not in three. A node is a span, with the height at which it was reached. A step to the
+/// next column keeps its height as long as that column is free there. The heights of the way that was found are
+/// straightened in the end. Not exact: a span remembers only the cheapest height. Deterministic. Its arrays have the
+/// size of the map's window and are kept between searches.
 class SpanSearch {
  public:
-  /// With `greed` > 1 spans near the goal come first: a way costs more than the least, hardly more than so many
-  /// times as much, and is found after fewer expansions. Throws std::invalid_argument unless all are in [1, 100].
+  /// With `greed` > 1 spans near the goal come first. A way then costs more than the least, hardly more than this
+  /// many times as much, and is found after fewer expansions. Throws std::invalid_argument unless all are in [1,
+  /// 100].
   explicit SpanSearch(const WayCost& cost = {}, double greed = 1.0);
 
   /// Makes room for searches on maps with this one's window, which the first search does otherwise.
   void Reserve(const OccupancyMap& map);
 
-  /// Finds a path of places in free cells, one a column, from `from` to `to`. A blocked end is first moved to
-  /// the nearest free cell within GridSearch::kEndSearchRadius. Expands at most `max_expansions` spans, and
-  /// looks at no way that costs more than `max_cost` [m]. Allocates only to grow to a high-water mark.
+  /// Finds a path of places in free cells, one per column, from `from` to `to`. A blocked end is first moved to the
+  /// nearest free cell within GridSearch::kEndSearchRadius. Expands at most `max_expansions` spans, and ignores ways
+  /// that cost more than `max_cost` [m]. Allocates only to grow to a high-water mark.
   SearchStatus Search(const FreeSpace& space, const Eigen::Vector3d& from,
                       const Eigen::Vector3d& to, int max_expansions, GuidePath* path,
                       std::span<const Barrier> barriers = {},
@@ -45,8 +45,8 @@ class SpanSearch {
   double cost() const { return cost_; }
 
  private:
-  // Of the nodes to be expanded, those with the least f first, to a quarter of a cell, and of these the last
-  // that came. What an exact order costs is more than it gains where the estimate is weighed.
+  // The nodes to be expanded. Those with the least f come first, to a quarter of a cell, and of these the last that
+  // came. With a weighted estimate an exact order costs more than it gains.
   class Queue {
    public:
     Queue();

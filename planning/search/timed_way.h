@@ -13,9 +13,9 @@ namespace touchdown::planning {
 /// Of a curve between two of its times, by 24 chords [m].
 double LengthOf(const UniformBspline& curve, double from, double to);
 
-/// A way for a curve to follow: places in time, along another curve but for detours past what blocks that.
-/// Times are the other curve's, and later by what the detours take longer. The parts that the detours replace
-/// are those that a curve has to be bound to. Nothing of it allocates, but to grow to a high-water mark.
+/// A way for a curve to follow: places in time along another curve, with detours past what blocks that. Times are the
+/// other curve's, delayed by the detours' extra time. A curve has to be bound to the parts that the detours replace.
+/// Allocates only to grow to a high-water mark.
 class TimedWay {
  public:
   TimedWay();
@@ -25,15 +25,14 @@ class TimedWay {
   /// On along the curve, from `from` [s] on until `to`, both in the curve's time.
   void AddCurve(const UniformBspline& curve, double from, double to);
 
-  /// Instead of the curve in `run`, at a constant speed. What the path is longer takes its time at `speed`
-  /// [m/s].
+  /// The path replaces the curve in `run`, at a constant speed. Its extra length takes its time at `speed` [m/s].
   void AddDetour(const UniformBspline& curve, const BlockedRun& run, const GuidePath& path,
                  double speed);
 
   bool known() const { return !places_.empty(); }
   double t0() const { return places_.front().t; }
   double t_end() const { return places_.back().t; }
-  /// By what the detours take longer [s].
+  /// Extra time of the detours [s].
   double delay() const { return delay_; }
 
   /// Stretches that a curve has to be bound to, in the way's time.
@@ -50,10 +49,10 @@ class TimedWay {
   void Sample(double from, double to, GuidePath* path) const;
 
   /// Beside a stretch of a curve that follows it: from where it is nearest to the stretch's start to where it is
-  /// nearest to its end, or at the same shares of time where these are not in order. @pre known().
+  /// nearest to its end. If these are not in order, at the same shares of time. @pre known().
   void SampleBeside(const UniformBspline& curve, const BlockedRun& run, GuidePath* path) const;
 
-  /// The way's time at a time of the curve that it follows, later by the detours until then.
+  /// The way's time at a time of the curve that it follows: later by the detours before it.
   double TimeOf(double curve_t) const;
 
   /// Of the way in this part of its time [m]. @pre known().

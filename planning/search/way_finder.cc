@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A way tells the side on which an obstacle is passed, and how long that takes: so a search may be greedy, and
-// the curve that is flown already is as good a way as any. A wall that turns out to be longer than it seemed
-// moves the committed way by its length, and does not ask which way to take at all.
+// A way gives the side on which an obstacle is passed, and how long that takes. So a search may be
+// greedy, and the curve that is flown already is as good a way as any. If a wall turns out to be
+// longer than it seemed, the committed way moves by its length. The choice of the way stays.
 
 #include "planning/search/way_finder.h"
 

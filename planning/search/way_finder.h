@@ -12,8 +12,8 @@
 
 namespace touchdown::planning {
 
-/// Finds ways past what blocks a curve: along it, with detours. Those of the committed curve are hardly longer than it,
-/// so that its side of an obstacle is kept. All searches take from a step's budget.
+/// Finds ways past what blocks a curve: along it, with detours. Those of the committed curve are hardly longer than
+/// it, so that its side of an obstacle is kept. All searches use a step's budget.
 class WayFinder {
  public:
   /// @param budget that must outlive this.
@@ -25,15 +25,16 @@ class WayFinder {
   /// An attempt begins: no way is closed. @param speed of detours [m/s].
   void Begin(double speed);
 
-  /// The committed curve from t_from [s] on. Not known where it starts or ends blocked, or where a detour is
-  /// not found or is much longer than the straight line. Takes WorkBudget::kSearchShare of what is left at most.
+  /// The committed curve from t_from [s] on. Not known if it starts or ends blocked, or if a detour is not found or
+  /// is much longer than the straight line. Takes at most WorkBudget::kSearchShare of what is left.
   void Keep(const UniformBspline& committed, double t_from, const FreeSpace& space, TimedWay* way);
 
-  /// The cheapest way past `run` that is not closed. A run that leaves the map's window before it ends is cut
-  /// there: the search knows no more; one that begins out of it is led along the curve, between floor and
-  /// ceiling. kFound and kEndsOutside leave a way.
-  /// Takes all work that is left but `reserve`; a way beside a closed one, WorkBudget::kSearchShare of that.
-  /// @param max_cost of the detour; ways that cost more are not looked at [m].
+  /// The cheapest way past `run` that is not closed. A run that leaves the map's window before it ends
+  /// is cut there: the search does not know what is beyond. A run that begins out of it is led along
+  /// the curve, between floor and ceiling. kFound and kEndsOutside leave a way.
+  /// Takes all work that is left except `reserve`; a way beside a closed one, WorkBudget::kSearchShare
+  /// of that.
+  /// @param max_cost of the detour; ways that cost more are ignored [m].
   SearchStatus LeadPast(const UniformBspline& curve, BlockedRun run, const FreeSpace& space,
                         TimedWay* way, int reserve = 0,
                         double max_cost = std::numeric_limits<double>::infinity());
@@ -58,9 +59,9 @@ class WayFinder {
   WorkBudget* budget_;
 };
 
-/// Ends a run only where the curve is on the way's side of everything, at the same share of its time, and `more` of
-/// it [s]: a curve that leaves an obstacle seen from the front is behind its front, not past it.
-/// @pre way.known().
+/// Extends a run to where the curve is on the way's side of everything, at the same share of its time, and `more` of
+/// it [s] beyond. Where a curve leaves an obstacle seen from the front, it is behind that front, not past it. @pre
+/// way.known().
 void EndBeside(const TimedWay& way, const UniformBspline& curve, const FreeSpace& space,
                double more, BlockedRun* run);
 

@@ -3,9 +3,10 @@
 
 namespace touchdown::planning {
 
-/// What a step may still do, in counted work: no clock decides what is planned. The costs are in
-/// the ratio of times that were measured, and make them nearly proportional to the work: of 250 slow steps of
-/// hostile flights the 99 % quantile of time over work is 1.5 times the median (docs/results/replan/tables.md).
+/// The remaining work of a step, counted: no clock decides what is planned. The costs have the
+/// ratio of measured times, so a step's time is nearly proportional to its work. Of 250 slow steps of
+/// hostile flights the 99 % quantile of time over work is 1.5 times the median
+/// (docs/results/replan/tables.md).
 class WorkBudget {
  public:
   static constexpr int kSpan = 1;     ///< that a search expands

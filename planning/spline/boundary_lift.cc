@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Both ends of a uniform cubic B-spline eliminated exactly. At a knot
 //   p = (Q_i + 4 Q_{i+1} + Q_{i+2})/6, v = (Q_{i+2} - Q_i)/(2h), a = (Q_i - 2 Q_{i+1} +
-//   Q_{i+2})/h^2,
-// which is inverted at the first and the last knot. Between them the control points follow
-//   c - (h^2/6) c'',  c the quintic Hermite polynomial between the ends:
-// the quasi-interpolant that reproduces cubics. Its weights on (p0, h v0, h^2 a0, P, h V, h^2 A)
-// are constants of the control point's index: computed once, and derivatives with respect to h are
-// plain.
-// Without this lift the interior points stay put while free arrival moves the ends, which is stiff.
+//   Q_{i+2})/h^2.
+// This is inverted at the first and the last knot. Between them the control points follow
+//   c - (h^2/6) c'',  c the quintic Hermite polynomial between the ends.
+// This is the quasi-interpolant that reproduces cubics. Its weights on (p0, h v0, h^2 a0, P, h V,
+// h^2 A) are constants of the control point's index. They are computed once, and derivatives with
+// respect to h are simple. Without this lift the interior points do not move when free arrival
+// moves the ends, which is stiff.
 
 #include "touchdown/planning/spline/boundary_lift.h"
 
@@ -42,8 +42,8 @@ std::array<double, 6> HermiteWeights(int i, int segments) {
   return weights;
 }
 
-/// A column of end values (p0, h v0, h^2 a0, P, h V, h^2 A): what every control point's offset is a
-/// fixed combination of.
+/// A column of end values (p0, h v0, h^2 a0, P, h V, h^2 A). Every control point's offset is a
+/// fixed combination of it.
 using EndColumn = BoundaryWeights::Column;
 
 EndColumn Column(const SplineState& start, const SplineState& end, double h) {

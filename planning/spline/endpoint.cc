@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The moving endpoint (eq. 17-18): the predicted pad plus a height above it that may sink. While
-// the height sinks, the approach velocity is the sinking itself, so that consecutive plans join;
-// once it rests on its floor the approach velocity is that of the contact, zero if there is none.
-// A point that is passed adds a velocity of its own. Only the height's own rate moves the end as the
-// arrival time does.
+// the height sinks, the approach velocity is that sinking, so that consecutive plans join. On the
+// height's floor the approach velocity is that of the contact, zero if there is none. A point that
+// is passed adds a velocity of its own. Only the height's own rate moves the end as the arrival
+// time does.
 
 #include "touchdown/planning/spline/endpoint.h"
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The thrust over the mass that flies an acceleration a against a pull d is f = a + g e_z - d
-// (differential flatness, D. Mellinger and V. Kumar, ICRA 2011). In level flight its vertical part is
-// g - d_z, and its horizontal part, at worst |a| + |d_xy|, is to stay below tan(tilt) times that, and
-// with it below the greatest thrust. Conservative: the pull may come from the worst direction.
+// (differential flatness, D. Mellinger and V. Kumar, ICRA 2011). In level flight its vertical part
+// is g - d_z. Its horizontal part is at worst |a| + |d_xy|. It must stay below tan(tilt) times the
+// vertical part, and both together below the greatest thrust. Conservative: the pull may come from
+// the worst direction.
 
 #include "touchdown/planning/spline/limits.h"
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Braking, climbing and escaping. The stopping point is where a cubic velocity profile from (v0,
-// a0) to rest ends, p0 + T v0/2 + T^2 a0/12; the spline between the ends is the quintic Hermite's.
+// Braking, climbing and escaping. The stopping point is the end of a cubic velocity profile from
+// (v0, a0) to rest, p0 + T v0/2 + T^2 a0/12. Between the ends the spline follows the quintic
+// Hermite polynomial.
 
 #include "touchdown/planning/spline/rest_trajectory.h"
 
@@ -43,7 +44,7 @@ void MakeRestTrajectory(const SplineState& start, double t0, const Eigen::Vector
       best_T = T;
     }
   }
-  // A start that still speeds up at its limit cannot keep it: then the least excess has to do.
+  // A start that still speeds up at its limit cannot keep it. The least excess is used then.
   make(best_T);
 }
 

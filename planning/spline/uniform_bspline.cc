@@ -112,8 +112,8 @@ DerivativeBounds BoundDerivatives(const UniformBspline& curve, const Eigen::Vect
   const Eigen::Map<const ControlPoints> q = curve.control_points();
   const double h = curve.interval();
   DerivativeBounds bounds;
-  // The specific thrust f = a + g e_z - pull is linear on a segment, so that f x j is constant there, and the axis
-  // turns with |f x j| / |f|^2: fastest where f is shortest.
+  // The specific thrust f = a + g e_z - pull is linear on a segment, so f x j is constant there.
+  // The axis turns with |f x j| / |f|^2: fastest where f is shortest.
   const Eigen::Vector3d hover_W = estimation::kGravity * Eigen::Vector3d::UnitZ() - pull_W;
   SplineState from = curve.AtKnot(0);
   double speed2 = from.v.squaredNorm(), acceleration2 = from.a.squaredNorm();

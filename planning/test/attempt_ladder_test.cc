@@ -60,7 +60,7 @@ TEST(AttemptLadder, EndsAndNeverTriesTheSameTwice) {
       EXPECT_EQ(decision.next->number, attempt.number + 1);
       EXPECT_GE(decision.next->duration, attempt.duration);
       EXPECT_LE(decision.next->duration, facts.max_duration);
-      // What failed with the committed plan may be tried once more without it.
+      // An attempt that failed with the committed plan may be repeated without it.
       const Attempt& next = *decision.next;
       EXPECT_TRUE(tried.insert({next.duration, next.arrival, next.unseen_reach}).second);
       if (attempt.arrival == ArrivalMode::kFixed && !facts.lands_soon) {
@@ -85,7 +85,7 @@ TEST(AttemptLadder, ArrivesLaterAndFixedAfterACollision) {
   const AttemptDecision fixed =
       NextAttempt(UsualRung(ArrivalMode::kFixed), outcome, facts, constants);
   ASSERT_TRUE(fixed.next);
-  EXPECT_DOUBLE_EQ(fixed.next->duration, 1.4 * 9.0);  // the way round took so long
+  EXPECT_DOUBLE_EQ(fixed.next->duration, 1.4 * 9.0);  // the way around took so long
   const AttemptDecision limits =
       NextAttempt(UsualRung(), {ReplanReason::kLimitsExceeded, 9.0}, facts, constants);
   ASSERT_TRUE(limits.next);

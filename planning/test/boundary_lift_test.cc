@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The lift's derivatives with respect to the knot interval, over a pad whose snap is zero: then none of them lacks
-// anything.
+// The lift's derivatives with respect to the knot interval, over a pad whose snap is zero: then they are complete.
 #include "touchdown/planning/spline/boundary_lift.h"
 
 #include <vector>

@@ -11,7 +11,7 @@
 namespace touchdown::planning {
 namespace {
 
-/// All that Certify itself proves; the pair is proven apart.
+/// All that Certify itself proves; the pair's proof is separate.
 bool Proven(Certificate certificate) {
   certificate.stops_in_observed_space = true;
   return certificate.passed();

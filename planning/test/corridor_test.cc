@@ -16,8 +16,8 @@ bool Inside(const std::vector<ObstaclePair>& pairs, const Eigen::Vector3d& p, do
   return true;
 }
 
-// The point keeps its side of every plane, the blocked cells around are on the other side of one: all
-// but the few that a nearer cell of their row stood for.
+// The point keeps its side of every plane. The blocked cells around are on the other side of one,
+// except the few that a nearer cell of their row represented.
 TEST(Corridor, HoldsThePointAndHardlyABlockedCell) {
   Draw draw(3);
   Corridor corridor(0.3, 0.05);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The duration guess: reachable within the limits in most cases, bounded below by physics, infinite
-// for a pad that runs away. Of a turning pad it is a guess even so: a few steps towards the fixed point leave it
-// up to a seventh below the straight line at top speed (the worst of 2000 draws).
+// for a pad that moves away. For a turning pad it remains a guess. A few steps towards the fixed
+// point leave it up to a seventh below the straight line at top speed (the worst of 2000 draws).
 
 #include "planning/problem/duration_guess.h"
 

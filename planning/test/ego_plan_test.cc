@@ -87,7 +87,7 @@ TEST(EgoPlan, EveryDeadEndHasItsName) {
 }
 
 TEST(EgoPlan, ReboundsAndRestartsEnd) {
-  // A slot narrower than the clearance on both sides: pairs of both walls fight.
+  // A slot narrower than the clearance on both sides: pairs of both walls contradict each other.
   CubeGrid slot = EmptyGrid();
   AddBox({-2.2, -0.6, 0}, {-0.6, -0.1, 3}, &slot);
   AddBox({-2.2, 0.2, 0}, {-0.6, 0.8, 3}, &slot);
@@ -109,8 +109,8 @@ TEST(EgoPlan, ReboundsAndRestartsEnd) {
 }
 
 TEST(EgoPlan, ASlowedDownCurveThatHitsIsNoPlan) {
-  // The curve that is slowed down swings wider than the one that was checked: behind the vehicle,
-  // where it turns round at twice the speed that it may fly.
+  // The curve that is slowed down swings wider than the one that was checked. It does so behind the
+  // vehicle, where it turns round at twice the speed that it may fly.
   bool hit = false;
   EgoPlan plan({});
   for (double x = -6.5; x < -4.5 && !hit; x += 0.02) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Goals at all heights, that stand or move, behind pillars and doors, asked for at all rates: they are reached, and
-// nothing is touched on the way.
+// Goals at all heights, that stand or move, behind pillars and doors, asked for at all rates. They
+// are reached, and the vehicle touches nothing on the way.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -49,7 +49,7 @@ struct GoalWorld {
     options.inflation_radius = 0.4;
     return options;
   }
-  /// But for the room around the start and the goal, and all of the goal's way.
+  /// Except the room around the start and the goal, and all of the goal's way.
   void Fill(const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
     for (double x = low.x() + 0.05; x < high.x(); x += 0.1) {
       for (double y = low.y() + 0.05; y < high.y(); y += 0.1) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A* against Dijkstra, and what stops it.
+// A* against Dijkstra, and the limits that stop it.
 
 #include "planning/search/grid_search.h"
 
@@ -43,8 +43,8 @@ double DijkstraLength(const FreeSpace& space, const CellIndex& from, const CellI
   return std::numeric_limits<double>::infinity();
 }
 
-// Rows of bits must give what a look at every cell gives, at the window's edges and under levels, too, and where
-// a row within reach is longer than a word.
+// Rows of bits must give the same as a test of every cell. This includes the window's edges,
+// levels, and rows within reach that are longer than a word.
 TEST(GridSearch, TheNearestFreeCellIsThatOfALookAtEveryCell) {
   Draw draw(5);
   int moved = 0, lost = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The hull's ball looked at cell by cell, without rows of bits and without steps along the way: what the
-// tests of the safety rule compare with.
+// The hull's ball tested cell by cell, without rows of bits and without steps along the way. The tests of the safety
+// rule compare with it.
 #pragma once
 
 #include <algorithm>
@@ -35,9 +35,9 @@ void ForEachTouched(const OccupancyMap& map, const Eigen::Vector3d& p_W, double 
   });
 }
 
-/// Whether a ball at p_W touches nothing but cells that are observed free. Excepted: those below
-/// the ground height, and those that the start's ball (larger by kHullRoom) reached into and that are no
-/// nearer by more than `nearer` [m].
+/// Whether a ball at p_W touches only cells that are observed free. Cells below the ground height are excepted. So
+/// are cells that the start's ball (larger by kHullRoom) reached into and that are no nearer by more than `nearer`
+/// [m].
 inline bool BallInFree(const OccupancyMap& map, const Eigen::Vector3d& p_W, double radius,
                        const Eigen::Vector3d* p_start_W = nullptr, double nearer = 0.0) {
   bool free = true;
@@ -78,8 +78,8 @@ inline OccupancyMapOptions NoGround() {
   return options;
 }
 
-/// All observed free, but for `boxes` random boxes beyond `keep_free` of the origin that were never seen or
-/// are obstacles.
+/// All observed free, except `boxes` random boxes beyond `keep_free` of the origin that were never seen or are
+/// obstacles.
 inline OccupancyMap RandomMap(Draw* draw, int boxes, double keep_free,
                               const OccupancyMapOptions& options = NoGround()) {
   OccupancyMap map(options);

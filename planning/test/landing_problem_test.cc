@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The landing problem as a whole: both ends met exactly at every point the solver can reach, and
-// the one optimum of the convex problem from any start.
+// The landing problem as a whole. Both ends are met exactly at every point the solver can reach.
+// The convex problem has one optimum from any start.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -61,7 +61,7 @@ TEST(LandingProblem, BothEndsAreMetExactlyAtAnyPoint) {
   }
 }
 
-// The same problem: the point itself. A pad that went elsewhere: the same shape between the new ends.
+// The same problem gives the point itself. A pad that moved gives the same shape between new ends.
 TEST(LandingProblem, AWarmGuessKeepsTheShapeOfThePreviousCurve) {
   Draw draw(17);
   for (int trial = 0; trial < 200; ++trial) {
@@ -84,7 +84,7 @@ TEST(LandingProblem, AWarmGuessKeepsTheShapeOfThePreviousCurve) {
     EXPECT_LT((other - warm).norm(), 1e-7);
     EXPECT_LT((problem.Curve(other).AtKnot(0).p - moved.p).norm(), kExact);
 
-    // Later on the way, with the time that is left, it goes where the curve went.
+    // Later, with the remaining time, it follows the curve.
     const double t = 5.0 + 0.3 * curve.duration();
     const FlatState at = curve.Evaluate(t);
     problem.SetBoundary({at.p_WB, at.v_WB, at.a_WB}, t, pad, target);
@@ -146,7 +146,7 @@ TEST(LandingProblem, FreeArrivalBeatsTheGuessAndStaysInItsBounds) {
     solvers::SolverResult result;
     backend->Solve(problem.view(), problem.Guess(), {}, &result);
     ASSERT_TRUE(result.usable()) << result.message;
-    // The best curve that arrives when the guess does, in the free problem's eyes.
+    // The best curve that arrives when the guess does, evaluated in the free problem.
     LandingProblem fixed(20, Options(ArrivalMode::kFixed));
     fixed.SetBoundary(start, 0.0, pad, target);
     fixed.SetDuration(GuessDuration(start, 0.0, pad, target, options.limits, 1.0));
@@ -400,7 +400,7 @@ TEST(LandingProblem, BeforeItsBoundaryItSaysSo) {
     EXPECT_THAT(Refused([&] { problem.boundary_facts(); }), testing::HasSubstr("boundary_facts()"));
     EXPECT_THAT(Refused([&] { problem.Curve(y); }), testing::HasSubstr("Curve()"));
     EXPECT_NE(Refused([&] { problem.Curve(y, &curve); }), "");
-    // A solve all the same reports that it has no value.
+    // A solve then reports that the problem has no value.
     auto backend = solvers::MakeBackend(solvers::StandardBackends(), "ipopt");
     backend->Prepare(problem.view());
     solvers::SolverResult result;
@@ -479,7 +479,7 @@ concept CanBound = requires(LandingProblem problem, Pad&& pad) {
 static_assert(CanBound<const ArcPad&>);
 static_assert(!CanBound<ArcPad>, "the prediction of a temporary");
 
-// What the replanner decides cannot be set where it would be overwritten.
+// Options that the replanner decides cannot be set.
 template <class Options>
 concept HasArrival = requires(Options options) {
   options.arrival;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a steady pull leaves of the limits, and that plans keep it.
+// The limits under a steady pull, and that plans keep them.
 #include "touchdown/planning/spline/limits.h"
 
 #include <cmath>

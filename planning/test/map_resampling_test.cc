@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Files whose cells are not the map's: what is read against the rule, asked of every leaf; and what the flight
-// found of a file.
+// Files whose cells are not the map's. The result of reading is compared with the rule, applied to
+// every leaf. Also what a flight found of a file.
 
 #include <cmath>
 #include <sstream>
@@ -58,7 +58,7 @@ std::vector<Leaf> LeavesOf(const octomap::OcTree& tree) {
   return leaves;
 }
 
-/// The rule, by asking every leaf.
+/// The rule, applied to every leaf.
 CellState StateOf(const std::vector<Leaf>& leaves, const CellIndex& cell, double side) {
   const Eigen::Array3d low = side * cell.cast<double>().array(), high = low + side;
   const Eigen::Array3d middle = low + 0.5 * side;

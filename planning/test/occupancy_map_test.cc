@@ -168,7 +168,7 @@ TEST(OccupancyMap, LeavesOutGroundAndPad) {
   EXPECT_FALSE(map.IsOccupied(map.CellOf({2.01, 0.75, 0.05})));  // ground
 }
 
-// A wall 0.7 m high, 1.6 m before a pad of which only a coarse GPS tells: before, all of it was erased.
+// A wall 0.7 m high, 1.6 m before a pad known only by a coarse GPS: before, all of it was erased.
 TEST(OccupancyMap, ReturnsThatMayBeThePadsAreKeptUntilThePadIsKnown) {
   OccupancyMap map(SmallMap());
   const Eigen::Vector3d p_WC(0.05, 0.05, 0.85);
@@ -187,7 +187,7 @@ TEST(OccupancyMap, ReturnsThatMayBeThePadsAreKeptUntilThePadIsKnown) {
     EXPECT_FALSE(map.IsObservedFree(cell));
   }
   ExpectInflationIsConsistent(map);
-  // The tags tell where the pad was at that time: one cell was its front, the other was not it.
+  // The tags show where the pad was at that time: one cell was its front, the other was not it.
   map.ExplainDoubts([&](double t) {
     EXPECT_EQ(t, 7.0);
     PadOutline known = coarse;
@@ -448,7 +448,7 @@ TEST(OccupancyMap, RefusesAFrameWithTooFewDepths) {
   EXPECT_THROW(map.Integrate(frame, {}), std::invalid_argument);
 }
 
-// What no camera reports frees nothing: behind it may be anything.
+// An impossible depth frees nothing: anything may be behind it.
 TEST(OccupancyMap, APixelThatIsNoneSaysNothing) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   for (const float depth : {0.0F, -1.0F, 4.5F, 2000.0F, -kInfinity, std::nanf("")}) {
@@ -533,7 +533,7 @@ TEST(OccupancyMap, RefusesBadOptions) {
   EXPECT_THROW(OccupancyMap{options}, std::invalid_argument);
 }
 
-// A camera that is none must not reach beyond the grid.
+// An impossible camera must not reach beyond the grid.
 TEST(OccupancyMap, AnImpossibleCameraSaysNothing) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   const std::function<void(estimation::DepthFrame*)> slips[] = {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a return of the depth camera may come from: the pad, as well as its place is known, or not.
+// Whether a return of the depth camera may come from the pad, given the pad's uncertainty.
 
 #include "touchdown/planning/map/pad_outline.h"
 

@@ -182,7 +182,7 @@ TEST(PairBinder, WhatWasBoundIsBoundAgainOnTheRestOfTheCurve) {
     const double t = later.t0() + (pair.control_point - 1) * kInterval;
     EXPECT_GT((later.Position(t) - pair.p).dot(pair.v), 0.0);
   }
-  // What is over is forgotten.
+  // Parts in the past are forgotten.
   binder.Begin(kPoints - kGone);
   binder.Lead(way, {{-1.0, -0.5}, {-2.0, -2.0}});
   binder.Bind(wall.space, &pairs);

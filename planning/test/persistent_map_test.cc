@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The persistent map: nothing is lost when the window moves, nothing that moved on remains, and
-// octomap itself reads and writes the same files.
+// The persistent map loses nothing when the window moves, and keeps nothing that moved on. octomap
+// itself reads and writes the same files.
 
 #include "touchdown/planning/map/persistent_map.h"
 
@@ -31,8 +31,8 @@ OccupancyMapOptions SmallMap() {
   return options;
 }
 
-/// What a camera at `eye` sees that looks along +x at a wall 2.4 m from kEye and a post of 0.4 m width at
-/// `post` = (x, y), from the ground up. NaN: no post.
+/// The image of a camera at `eye` that looks along +x. It sees a wall 2.4 m from kEye and a post of
+/// 0.4 m width at `post` = (x, y), from the ground up. NaN: no post.
 estimation::DepthFrame Scene(const Eigen::Vector2d& post, const Eigen::Vector3d& eye = kEye) {
   estimation::DepthFrame frame;
   frame.p_WC = eye;
@@ -130,7 +130,7 @@ TEST(PersistentMap, AnObstacleThatHasGoneIsFreedInMemoryToo) {
   EXPECT_FALSE(kept.IsOccupied(post));
 }
 
-// Before, a remembered obstacle was freed by whatever passed its cell from however far.
+// Before, a remembered obstacle was freed by any ray through its cell, from any distance.
 TEST(PersistentMap, ARememberedObstacleIsNotFreedFromAfar) {
   PersistentMap kept(SmallMap());
   OccupancyMap map(SmallMap());
@@ -335,7 +335,7 @@ TEST(PersistentMap, RefusesAFileThatIsCutShortOrMangled) {
       EXPECT_NE(Refusal(file.substr(0, size)), "") << size;
     }
     EXPECT_THAT(Refusal(file + "x"), HasSubstr("behind its last node"));
-    // Some manglings make another map; none may do worse than be refused.
+    // Some changes make another map. The worst outcome allowed is a refusal.
     for (int i = 0; i < 200; ++i) {
       std::string mangled = file;
       mangled[static_cast<std::size_t>(draw.Uniform(0.0, 0.999) * file.size())] ^= 0x55;
@@ -347,7 +347,7 @@ TEST(PersistentMap, RefusesAFileThatIsCutShortOrMangled) {
   EXPECT_THAT(Refusal(deep), HasSubstr("deeper than 16 levels"));
 }
 
-// What is seen takes the place of what was read cell by cell, also where the file has eight of them in one.
+// Seen cells replace read ones cell by cell, also where the file has eight of them in one.
 TEST(PersistentMap, WhatWasReadAndWhatWasSeenAreOneMap) {
   octomap::OcTree tree(0.1);
   ForEachCell({{0, 0, 0}, {16, 16, 16}}, [&](const CellIndex& cell) {

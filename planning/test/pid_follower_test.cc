@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The PID baseline as a planner: what it leads to on a pad that drives straight, at rest, late and lost.
+// The PID baseline as a planner: its flights with a pad that drives straight, at rest, late and lost.
 #include "planning/baselines/pid/pid_follower.h"
 
 #include <algorithm>
@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 
 constexpr double kPeriod = 1.0 / PidFollower::kRate;
 
-/// A vehicle that flies its reference but for a steady offset, over a pad that drives straight.
+/// A vehicle that flies its reference with a steady offset, over a pad that drives straight.
 class Flight {
  public:
   explicit Flight(double pad_speed, const Vector3d& offset = Vector3d::Zero(), PidGains gains = {})

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The baseline's law alone: limits, integral and what is refused.
+// The baseline's law alone: limits, integral and refusals.
 #include "planning/baselines/pid/pid_law.h"
 
 #include <stdexcept>

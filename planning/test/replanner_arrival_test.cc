@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which arrival time a step tries: later where the way round is longer, and where the pad is out of reach
-// behind an obstacle meanwhile.
+// Which arrival time a step tries: later if the way around is longer, and if the pad is out of
+// reach behind an obstacle meanwhile.
 
 #include <gtest/gtest.h>
 
@@ -50,7 +50,8 @@ TEST(ReplannerArrival, TheWiderAWallTheLaterThePlanArrives) {
   }
 }
 
-// Before, the fresh guess knew the straight way only, broke the promise, and every step put the arrival off.
+// Before, the fresh guess knew the straight way only and broke the promise: every step postponed
+// the arrival.
 TEST(ReplannerArrival, ALongWayRoundIsFlownToItsEnd) {
   for (const ArrivalMode arrival : {ArrivalMode::kFixed, ArrivalMode::kFree}) {
     OccupancyMap map = ObservedMap();

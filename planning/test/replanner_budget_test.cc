@@ -28,7 +28,7 @@ ReplannerOptions Within(int work, ArrivalMode arrival = ArrivalMode::kFree) {
   ReplannerOptions options = Options(arrival);
   options.max_work = work;
   options.ceiling_height = 3.0;
-  // Searches take a part of the work alone: what is asked here is how attempts go on.
+  // Searches take only a part of the work: this test is about how attempts continue.
   options.constants.heuristic_weight = 6.0;
   return options;
 }
@@ -46,7 +46,7 @@ TEST(ReplannerBudget, CountsTheSegmentsOfAStepThatSolvesOnce) {
   EXPECT_EQ(result.work, WorkBudget::kSegment * result.curve.segments() * evaluations);
 }
 
-/// What the solves that a log tells of took: each of its curve's segments and its pairs.
+/// The work of a log's solves: each of its curve's segments and its pairs.
 int WorkOfSolves(const ReplanLog& log) {
   int work = 0;
   for (const AttemptLog& attempt : log.attempts) {
@@ -90,7 +90,7 @@ class ReplannerBudgets : public ::testing::TestWithParam<ArrivalMode> {};
 INSTANTIATE_TEST_SUITE_P(Arrivals, ReplannerBudgets,
                          ::testing::Values(ArrivalMode::kFixed, ArrivalMode::kFree));
 
-// From rest, where nothing changes, small steps come to what a large one finds.
+// From rest, where nothing changes, small steps find the same as a large one.
 TEST_P(ReplannerBudgets, SmallStepsFindWhatALargeOneFinds) {
   Draw draw(62);
   int large_found = 0, small_found = 0, at_once = 0;

@@ -23,7 +23,7 @@ TEST(ReplannerFallback, UnobservedSpaceIsEnteredAtACrawlOrNotAtAll) {
   replanner.CommitHover(start, 0.0);
   const ReplanInput input = Input(start, pad, 0.0);
   replanner.Replan(input, unobserved);
-  // What is flown until the next plan can stop within the 0.3 m that were observed.
+  // The flown trajectory can stop within the observed 0.3 m until the next plan.
   const double t = input.t_start + replanner.options().reaction;
   const double speed = replanner.Reference(t).v_WB.norm();
   EXPECT_LE(speed * speed / (2 * 0.6 * 6.0), 0.3);
@@ -180,7 +180,7 @@ TEST(ReplannerFallback, BrakesWhenTheWayCloses) {
   Replanner replanner(Options(ArrivalMode::kFixed), solvers::StandardBackends());
   const Eigen::Vector3d start(-6.0, 0.0, 1.5);
   replanner.CommitHover(start, 0.0);
-  // A plan without a newer one is flown to its stop: it takes one at every step to get up to speed.
+  // A plan without a newer one is flown to its stop: speeding up takes one at every step.
   double t = 0.0;
   for (; t < 1.95; t += 0.1) {
     const FlatState at = replanner.Reference(t);
@@ -237,7 +237,7 @@ TEST(ReplannerFallback, ComesToRestOnRequestAndStays) {
   }
 }
 
-// Before, who could not climb in full stayed low in the pad's way.
+// Before, a vehicle that could not climb in full stayed low in the pad's way.
 TEST(ReplannerFallback, BelowARoofAPartOfTheClimbIsFlownOnce) {
   OccupancyMap map = ObservedMap();
   const Eigen::Vector3d start(-6.0, 0.0, 1.5);
@@ -265,7 +265,7 @@ TEST(ReplannerFallback, BelowARoofAPartOfTheClimbIsFlownOnce) {
   EXPECT_NEAR(replanner.Reference(4.0).p_WB.z(), start.z() + 0.8, 1e-6);
 }
 
-// The clearance of plans is for plans: the hull stops where they would not pass.
+// The clearance of plans holds for plans only: the hull may stop where they could not pass.
 TEST(ReplannerFallback, AStopThatIsProvenNeedsNoMore) {
   OccupancyMap map = ObservedMap(0.5);
   for (double x = -1.0; x < 3.0; x += 0.1) {
@@ -298,7 +298,7 @@ TEST(ReplannerFallback, AStartThatCannotBrakeIsNotTriedLater) {
   OccupancyMap map = ObservedMap();
   for (double y = -6.0; y <= 6.0; y += 0.5) AddPillar({1.5, y}, &map);
   ReplannerOptions options = Options(ArrivalMode::kFixed);
-  options.max_work = 200000;  // a way round is found, and leads nowhere in time
+  options.max_work = 200000;  // a way around is found, but it takes too long
   Replanner replanner(options, solvers::StandardBackends());
   ReplanLog log;
   replanner.set_log(&log);

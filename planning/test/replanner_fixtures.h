@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A replanner over random pillars: what its tests share.
+// A replanner over random pillars, shared by its tests.
 #pragma once
 
 #include <limits>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Ways around the first obstacle: both sides are tried, the cheaper is flown, and a side once flown
-// is kept; and none of it allocates.
+// is kept. Nothing here allocates.
 
 #include <gtest/gtest.h>
 
@@ -51,14 +51,14 @@ TEST(ReplannerGuides, BothSidesOfAnObstacleAreTriedAndTheCheaperWins) {
       side[guides - 1] = SideOf(result.curve) - y;
       cost[guides - 1] = result.solver.cost;
       for (const solvers::TermCost& term : result.solver.cost_by_term) {
-        // Not the terms whose weights are pressed from solve to solve.
+        // Without the terms whose weights grow from solve to solve.
         const TermRegistry terms = StandardTerms();
         const TermEntry& entry = FindTerm(terms, term.name);
         if (entry.is_clearance || entry.is_limit) cost[guides - 1] -= term.cost;
       }
     }
     chosen_second += side[0] * side[1] < 0.0;
-    // A second way may also have spared a longer arrival.
+    // A second way may also have avoided a later arrival.
     EXPECT_LE(duration[1], duration[0]);
     if (duration[0] == duration[1]) {
       EXPECT_LE(cost[1], cost[0]);
@@ -90,8 +90,8 @@ TEST(ReplannerGuides, ASideOnceFlownIsKept) {
   }
 }
 
-// Between two looks for other ways a plan that holds costs one solve and no search, and another step is as a
-// replanner finds it that was given the same memory.
+// Between two looks for other ways a plan that holds costs one solve and no search. A replanner with the same memory
+// makes the same step.
 TEST(ReplannerGuides, APlanThatHoldsCostsOneSolve) {
   Draw draw(43);
   int steps = 0, solves = 0, looks = 0;
@@ -159,7 +159,7 @@ TEST(ReplannerGuides, AWallThatTurnsOutLongerMovesTheWay) {
   }
 }
 
-// Where the arrival is too early for the way round, later ones are tried: slower plans, hardly longer ones.
+// If the arrival is too early for the way around, later ones are tried: plans are slower, not longer.
 TEST(ReplannerGuides, AnAttemptThatFailsIsFollowedByASlowerOne) {
   Draw draw(17);
   int followed = 0, held_back = 0, planned = 0;
@@ -219,8 +219,8 @@ TEST(ReplannerGuides, ANearObstacleGetsFineSegmentsAtOnce) {
     OccupancyMap map = ObservedMap();
     AddPillar({c.near ? -4.0 : 0.0, 0.05}, &map);
     ReplannerOptions options = Options(c.arrival);
-    // With the hull that it has, the vehicle is too near to the pillar to stop, so that no plan is
-    // proven: here it is the segments that count.
+    // With its real hull the vehicle is too near to the pillar to stop, so no plan would be proven.
+    // Only the segments matter here.
     options.hull_radius = 0.0;
     options.limits.body_rate = 100.0;
     Replanner replanner(options, solvers::StandardBackends());

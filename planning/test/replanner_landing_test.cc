@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The last stretch before contact: what was proven to land is not put off, unless the deck is gone.
+// The last stretch before contact: a proven landing is not postponed, unless the deck is gone.
 #include <limits>
 #include <memory>
 
@@ -50,7 +50,7 @@ class LastStretch : public ::testing::Test {
   double t_ = 0.0;
 };
 
-// What was bound before would push the vehicle at the deck.
+// Pairs bound before would push the vehicle towards the deck.
 TEST(ReplannerLanding, NothingIsKeptShortlyBeforeContact) {
   const OccupancyMap map = ObservedMap();
   const ArcPad pad({4.5, 0.0, kDeck}, 0.3, 0.0, 0.0);
@@ -84,7 +84,7 @@ TEST_F(LastStretch, ItsPairLands) {
 }
 
 TEST_F(LastStretch, WithoutANewPlanTheLandingIsKept) {
-  // Nothing around was ever seen, for all that the next step knows.
+  // In the next step's map nothing around was ever seen.
   map_ = OccupancyMap(map_.options());
   const ReplanResult& result = Ask(pad_);
   EXPECT_EQ(result.status, ReplanStatus::kKept);
@@ -135,7 +135,7 @@ TEST_F(LastStretch, ADeckThatIsGoneIsNotLandedOn) {
   const ReplanResult& result = Ask(gone);
   EXPECT_FALSE(result.Lands());
   EXPECT_TRUE(result.certificate.stops_in_observed_space);
-  // And nothing goes on below where the deck was.
+  // And no trajectory goes on below where the deck was.
   for (double t = t_; t < t_ + 5.0; t += 0.02) {
     EXPECT_GT(replanner_->Reference(t).p_WB.z(), 0.44) << t;
   }
@@ -171,7 +171,7 @@ TEST_F(LastStretch, WhereNothingElseIsProvenAHardLandingIsKept) {
   EXPECT_TRUE(result.proven);
 }
 
-// What is unknown before it does not hide it.
+// Unknown cells in front do not hide it.
 TEST_F(LastStretch, AnObstacleBehindUnknownCellsEndsIt) {
   const Eigen::Vector3d end = landing_.curve.Position(landing_.curve.t_end());
   map_ = OccupancyMap(map_.options());
@@ -181,7 +181,7 @@ TEST_F(LastStretch, AnObstacleBehindUnknownCellsEndsIt) {
   EXPECT_FALSE(result.certificate.stops_in_observed_space) << "nothing else is proven";
 }
 
-// Without a proof it rises, and does not go on to where the deck was; and the pair says what it is.
+// Without a proof it rises, and does not go on to where the deck was. The pair says that it is not proven.
 TEST_F(LastStretch, AMissedLandingInTheUnseenRisesAndIsNotCalledProven) {
   map_ = OccupancyMap(map_.options());
   const ArcPad gone({4.0, 3.0, kDeck}, 0.5, 0.0, 0.0);
@@ -191,7 +191,7 @@ TEST_F(LastStretch, AMissedLandingInTheUnseenRisesAndIsNotCalledProven) {
   EXPECT_FALSE(result.proven);
   EXPECT_FALSE(result.certificate.stops_in_observed_space);
   EXPECT_GT(replanner_->Reference(t_ + 5.0).p_WB.z(), kDeck + 0.5);
-  // What is flown on without a new pair is not proven by being flown on.
+  // Going on without a new pair does not make the old one proven.
   t_ += 0.1;
   EXPECT_FALSE(Ask(gone).certificate.stops_in_observed_space);
   // A hover elsewhere is a new pair.
@@ -221,7 +221,7 @@ TEST_F(LastStretch, WhoComesToRestKnowsTheDeckBelow) {
 }
 
 TEST_F(LastStretch, ContactThatNeverComesEndsIt) {
-  // The deck is lower than it is taken to be: the pair is flown to its end, and past it not for ever.
+  // The deck is lower than estimated: the pair is flown to its end, and past it for a limited time.
   // Nothing else is proven meanwhile.
   map_ = OccupancyMap(map_.options());
   const double t_end = landing_.curve.t_end();

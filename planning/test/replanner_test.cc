@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The replanning step over random pads, horizons, fields and both arrival modes: what is accepted
-// is certified, and every way it can fail has its name.
+// The replanning step over random pads, horizons, fields and both arrival modes. What is accepted
+// is certified, and every kind of failure has its name.
 
 #include "touchdown/planning/replan/replanner.h"
 
@@ -116,7 +116,7 @@ TEST(Replanner, TheSameQuestionTwiceGivesTheSameBits) {
   EXPECT_EQ(run(), run());
 }
 
-// Every step again in another replanner, from the state before it, written down and not.
+// Every step again in another replanner, from the state before it, with a log and without.
 TEST(Replanner, AStepIsRepeatedFromItsState) {
   const ArcPad pad({5.0, 2.0, 0.3}, 1.0, 0.4, 0.1);
   OccupancyMap map = ObservedMap();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What studies switch off (the pad's velocity at the end, the warm start), and answers that come late.
+// Options that studies switch off (end velocity, warm start), and answers that come late.
 #include <memory>
 #include <vector>
 
@@ -91,7 +91,7 @@ TEST(ReplannerVariants, ALateAnswerTakesOverLate) {
   const Eigen::Vector3d promised = replanner.Reference(1.0).p_WB;
   EXPECT_EQ(replanner.Replan(Input(kStart, pad, 0.2), map).reason, ReplanReason::kInvalidInput);
   EXPECT_EQ(replanner.Reference(1.0).p_WB, promised);
-  // Nothing was committed by that step: there is nothing to put off.
+  // Nothing was committed by that step: there is nothing to postpone.
   replanner.TakeOverAt(0.9);
   EXPECT_EQ(replanner.Reference(0.8).p_WB, replanner.state().next.curve.Evaluate(0.8).p_WB);
 }

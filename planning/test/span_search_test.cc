@@ -90,7 +90,7 @@ TEST(SpanSearch, GoesAroundWhatIsNarrowAndOverWhatIsLow) {
   Fill(&sill, {0.0, -3.2, -1.6}, {0.2, 3.2, 0.4});
   EXPECT_LT(farthest(1, sill), 0.2);
   EXPECT_GT(farthest(2, sill), 0.4);
-  // The string of heights is tight: neither a step at the wall, nor higher than it has to be.
+  // The heights are as straight as possible: no step at the wall, and no higher than needed.
   EXPECT_LT(farthest(2, sill), 0.65);
   for (std::size_t i = 1; i < path.size(); ++i) {
     EXPECT_LT(std::abs(path[i].z() - path[i - 1].z()), 0.05);

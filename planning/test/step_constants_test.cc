@@ -27,7 +27,7 @@ TEST(StepConstants, AreAllInTheTableOnce) {
   }
   EXPECT_LE(names.size(), 30u);
   EXPECT_LE(size, sizeof(StepConstants));
-  EXPECT_GT(size + 4 * alignof(StepConstants), sizeof(StepConstants));  // but for padding
+  EXPECT_GT(size + 4 * alignof(StepConstants), sizeof(StepConstants));  // except for padding
 }
 
 TEST(StepConstants, AreScaledOneAtATime) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The pair of a curve and its stored stop: what is proven is what is flown, over random maps, with answers
+// The pair of a curve and its stored stop: what is proven is what is flown. Tested over random maps, with answers
 // that are lost, late and refused.
 
 #include "touchdown/planning/certify/stored_stop.h"
@@ -59,7 +59,7 @@ TEST(StoredStop, NoProvenPairMeetsWhatIsNotObservedFree) {
     leaves += proof.start.leaves();
     EXPECT_FALSE(proof.contact);
     EXPECT_EQ(pair.t_stop, t_handover);
-    // The two are one way: no jump in position, velocity or acceleration.
+    // Curve and stop are one trajectory: no jump in position, velocity or acceleration.
     const FlatState before = pair.curve.EvaluateOnward(t_handover), after = pair.At(t_handover);
     EXPECT_LT((before.p_WB - after.p_WB).norm(), 1e-9);
     EXPECT_LT((before.v_WB - after.v_WB).norm(), 1e-9);
@@ -196,7 +196,7 @@ TEST_F(StopOverDeck, WhereItCannotClimbALandingGoesOnToContact) {
   EXPECT_TRUE(lands.proven);
   EXPECT_TRUE(lands.contact);
   EXPECT_EQ(pair.t_stop, std::numeric_limits<double>::infinity());
-  // Not past a post beside the deck that stands 0.1 m above its top; one as high as the deck is no matter.
+  // Not past a post beside the deck that stands 0.1 m above its top; one as high as the deck is allowed.
   map_.SetState({5, 0, 3}, CellState::kOccupied);
   EXPECT_FALSE(Prove(0.1, 0.4, PairEnd::kRest, &pair).proven);
   hull_.deck_half_size = 0.3;  // so that the hull's ball reaches beside it
@@ -270,7 +270,7 @@ TEST_F(StopOverDeck, ALandingMeetsTheDeckOnlyWhereItIsToTouchIt) {
       << "cells alone allow it";
 }
 
-// A foot of who leans touches before it is expected: nothing dives close over the deck, to level out there.
+// A leaning vehicle's foot touches early: no plan may dive close to the deck and level there.
 TEST_F(StopOverDeck, CloseOverTheDeckNothingSinksFasterThanItMayTouch) {
   map_.MarkRestFree();
   Draw draw(8);
@@ -329,7 +329,7 @@ TEST_F(StopOverDeck, WhereItsReturnsLieCellsMayBeUnknownNotOccupied) {
   }
 }
 
-// As the pilot asks for it: the feet meet the deck 0.15 s after the plan's end, sinking with 0.3 m/s.
+// As the pilot requests it: the feet meet the deck 0.15 s after the plan's end, sinking with 0.3 m/s.
 TEST_F(StopOverDeck, TheStripLeavesRoomToPressUntilContact) {
   for (int x = -32; x < 32; ++x) {
     for (int y = -32; y < 32; ++y) map_.SetState({x, y, 11}, CellState::kUnknown);
@@ -386,7 +386,7 @@ TEST(StoredStop, TheCertifiedStopIsFlownWhereNoNewerPlanComes) {
   state.current = state.next = pair;
   state.planned = true;
   replanner.Restore(state);
-  // Every question is refused: nothing is decided, and the vehicle stands where it was proven to.
+  // Every request is refused: nothing is decided, and the vehicle stands where the pair ends.
   for (int step = 1; step < 30; ++step) {
     const double t = 0.05 * step;
     ReplanInput input;
@@ -439,7 +439,7 @@ TEST_F(InFlight, AnAnswerThatComesAfterTheStopHasBegunIsDropped) {
   ASSERT_TRUE(std::isfinite(before.t_stop));
   ASSERT_EQ(Ask(1.1), ReplanStatus::kPlanned);
   replanner_.TakeOverAt(before.t_stop + 0.05);
-  // What it says now is what is flown.
+  // The result now is what is flown.
   EXPECT_FALSE(result_->committed);
   EXPECT_EQ(result_->status, ReplanStatus::kBraking);
   EXPECT_EQ(result_->curve.control_points(), before.stop.control_points());
@@ -484,8 +484,8 @@ struct Committed {
   bool narrow;
 };
 
-// The promise itself: whatever the map, and whichever answers get lost, the hull of what is flown stays in
-// cells that were observed free when the pair in force was committed.
+// The safety claim, whatever the map and whichever answers get lost. The hull of what is flown stays in cells that
+// were observed free when the pair in force was committed.
 TEST(StoredStop, TheReferencesHullStaysInWhatWasObservedFree) {
   Draw draw(7);
   int plans = 0, kept = 0, stops = 0, dropped = 0;
@@ -527,7 +527,7 @@ TEST(StoredStop, TheReferencesHullStaysInWhatWasObservedFree) {
                     [&](const CellIndex& cell) { map.SetState(cell, state); });
       }
       const double luck = draw.Uniform(0, 1);
-      if (luck > 0.2) {  // else nobody asks
+      if (luck > 0.2) {  // else there is no request
         const FlatState at = replanner.Reference(t);
         ReplanInput input = Input(at.p_WB, pad, t);
         input.vehicle.v_WB = at.v_WB;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The hull's tube through observed-free cells against the ball looked at cell by cell.
+// The hull's tube through observed-free cells against the ball tested cell by cell.
 
 #include "touchdown/planning/certify/swept_hull.h"
 
@@ -50,7 +50,7 @@ TEST(SweptHull, AgreesWithEveryCellOfEveryBall) {
   EXPECT_GT(refused, 100);
 }
 
-// However slowly and tightly the way turns: a single cell that the hull reaches into anywhere is found.
+// However slowly and tightly the way turns, every cell that the hull reaches into is found.
 TEST(SweptHull, TightTurnsAreSeen) {
   Draw draw(3);
   int looked = 0;
@@ -147,12 +147,12 @@ TEST(SweptHull, WhereAProvenPairHasLedIsNoEscape) {
   EXPECT_TRUE(leaves.proven);
   EXPECT_FALSE(leaves.start.leaves());
   EXPECT_TRUE(leaves.start.narrow);
-  // A hit is new, whatever was proven.
+  // A hit is new, whatever was proven before.
   map.SetState(CellIndex(-3, 0, 0), CellState::kOccupied);
   EXPECT_TRUE(Look(away, hull).start.occupied);
 }
 
-// A hull of no size, too: it was looked at where it begins and ends.
+// The same for a hull of no size: once it was tested only where it begins and ends.
 TEST(SweptHull, APointDoesNotPassAWallEither) {
   OccupancyMap map(NoGround());
   map.MarkRestFree();
@@ -281,8 +281,8 @@ TEST_F(OverDeck, WhereTheDeckMayNotBeItIsNot) {
 }
 
 TEST_F(OverDeck, APostBesideItForbidsOnlyAboveItsTop) {
-  // Its top is the deck's, in the cell from 0.4 to 0.5 m: what reaches no higher than the deck does
-  // no harm, what fills the next cell does.
+  // Its top is the deck's, in the cell from 0.4 to 0.5 m. What reaches no higher than the deck is
+  // harmless, what fills the next cell is not.
   map_.SetState({3, 0, 3}, CellState::kOccupied);
   EXPECT_TRUE(Lands());
   map_.SetState({3, 0, 5}, CellState::kOccupied);
@@ -294,7 +294,7 @@ TEST_F(OverDeck, WhatStandsOnItForbids) {
   EXPECT_FALSE(Lands());
 }
 
-// A vehicle that rises from above a deck that drives on leaves nothing but where the deck was.
+// A vehicle that rises while the deck drives on only leaves cells of the deck's old place.
 TEST_F(OverDeck, WhereTheDeckWasIsNothingElse) {
   const ArcPad drives({0, 0, 0.45}, 0.8, 0.0, 0.0);
   const FreeSpace space = SpaceOf(map_);
@@ -313,7 +313,8 @@ TEST_F(OverDeck, WhereTheDeckWasIsNothingElse) {
   EXPECT_FALSE(beside.start.unknown);
 }
 
-// Of a way that was proven before, what is not seen any more is no matter: not even before what blocks.
+// For a way that was proven before, cells not seen any more do not matter, not even before what
+// blocks.
 TEST(SweptHull, WhereUnseenPassesOnlyTheOccupiedBlocks) {
   OccupancyMap map(NoGround());
   const FreeSpace space = SpaceOf(map);

@@ -85,7 +85,7 @@ struct Saddle {
   }
 };
 
-/// The sum of squares that Saddle has where it can have no edge.
+/// Saddle as a sum of squares, which has no edge.
 struct Above : Saddle {
   template <class T>
   void operator()(int /*k*/, const T* q, const T& /*h*/, const T& /*t*/, T* u) const {
@@ -112,7 +112,7 @@ TEST(TermDerivatives, WhatWasNotComparedIsNotPassed) {
   EXPECT_NE(ComplaintOf(Above{{4, 1.0}}, true).find("edge"), std::string::npos);
 }
 
-/// No number wherever a random landing flies.
+/// NaN wherever a random landing flies.
 struct Log : Saddle {
   template <class T>
   void operator()(int /*k*/, const T* q, const T& /*h*/, const T& /*t*/, T* u) const {
@@ -182,7 +182,7 @@ void CompareWithDuals(Inner inner, const Loss& loss) {
     for (double& number : x) number = draw(random);
     for (double& number : multipliers) number = draw(random);
     const solvers::RowWeights rows{.multiplier = multipliers.data()};
-    // Every third evaluation is away from the interval that the map was told of.
+    // Every third evaluation is at another interval than the map was given.
     const double h = context.get().interval * (trial % 3 == 0 ? 1.3 : 1.0);
     solvers::Evaluation a, b;
     for (auto [problem, e] : {std::pair{&by_hand, &a}, {&by_duals, &b}}) {

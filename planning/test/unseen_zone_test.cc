@@ -46,7 +46,7 @@ TEST_P(Zone, IsWhereTheHullWouldTouchWhatIsUnseen) {
     const CellIndex around = CellIndex::Constant(kept + 2);
     ForEachCell({centre - around, centre + around + CellIndex::Ones()}, [&](const CellIndex& cell) {
       const bool near = (cell - centre).cwiseAbs().maxCoeff() <= kept;
-      // Where the hull is already it may be, however the lattice rounds that.
+      // Where the hull is already it may be, whatever the rounding of the lattice.
       const bool wanted = near && cell != centre && ClosedByHand(map, start, cell);
       ASSERT_EQ(zone->Holds(cell), wanted) << trial << " at " << (cell - centre).transpose();
       (wanted ? closed : open) += 1;
@@ -58,8 +58,9 @@ TEST_P(Zone, IsWhereTheHullWouldTouchWhatIsUnseen) {
 
 INSTANTIATE_TEST_SUITE_P(Reach, Zone, ::testing::Values(0.5, 1.0, 1.2));
 
-// The zone helps a plan to be found; what is proven is the tube. It closes where the ball around a cell's
-// centre reaches into an unseen cell along an axis, and spares corners by less than a cell's diagonal.
+// The zone only helps to find a plan; the tube is what is proven. It closes where the ball around a
+// cell's centre reaches into an unseen cell along an axis. It spares corners by less than a cell's
+// diagonal.
 TEST(UnseenZone, ClosesWhatTheHullTouchesButForCorners) {
   Draw draw(2);
   const auto zone = std::make_unique<UnseenZone>();

@@ -77,7 +77,7 @@ TEST(WayFinder, LeadsPastARunAndTheOtherWayWhenThatIsClosed) {
     farthest = std::min(farthest, p.y() * barrier->side.y());
   }
   EXPECT_LT(farthest, -0.6);
-  // It costs more, and is not looked at where that is forbidden.
+  // It costs more, and is not considered where that is forbidden.
   EXPECT_EQ(finder.LeadPast(curve, run, space, &way, 0, 0.9 * cost), SearchStatus::kNoPath);
   EXPECT_FALSE(way.known());
   finder.Begin(1.0);
@@ -137,8 +137,8 @@ TEST(WayFinder, KeepsNothingWhereADetourIsNone) {
       Kept(&finder, &budget, Straight({-2.0, 0.0, 0.05}, {0.0, 0.0, 0.05}), space).known());
 }
 
-// The curve enters the front of an obstacle whose back was not seen: where it is free again it is behind the
-// front, and a way that ended there would lead in.
+// The curve enters the front of an obstacle whose back was not seen. Where it is free again it is
+// behind the front, and a way that ended there would lead in.
 TEST(WayFinder, ARunEndsWhereTheCurveIsOnTheWaysSide) {
   OccupancyMap map = Wall();
   for (double x = 0.05; x < 1.5; x += 0.1) {  // the side that the way passes
@@ -154,7 +154,7 @@ TEST(WayFinder, ARunEndsWhereTheCurveIsOnTheWaysSide) {
   EndBeside(way, curve, space, 0.5, &run);
   EXPECT_GT(curve.Evaluate(run.t_out).p_WB.x(), 1.5);
   EXPECT_LE(run.t_out, curve.t_end());
-  // Nothing is between: it ends where it ended.
+  // Nothing is between: the end stays.
   const OccupancyMap plain = Wall();
   BlockedRun short_run = OnlyRun(curve, SpaceOf(plain));
   const double t_out = short_run.t_out;

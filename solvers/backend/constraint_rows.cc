@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Flat constraint rows in compressed-row form. A row's columns are those of the reduced blocks that
-// its window reaches, then the interval where it is free: nonzeros that happen to vanish stay in
-// the structure, which so depends on the windows alone.
+// Flat constraint rows in compressed-row form. A row has the columns of the reduced blocks that its
+// window reaches, then the interval where it is free. Nonzeros that happen to vanish stay in the
+// structure. So it depends on the windows alone.
 
 #include "touchdown/solvers/backend/constraint_rows.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Derivatives of a view against central differences, column by column. The Hessian is compared with
-// differences of the (checked) gradient, which keeps the error at the square root's size of the
-// second difference's.
+// differences of the (checked) gradient. Their error is about the square root of a second
+// difference's.
 
 #include "touchdown/solvers/backend/derivative_check.h"
 
@@ -17,8 +17,8 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Differences resolve a derivative up to so many times the relative error of the value, over the step: some of these
-// errors, over the relative error that callers ask for.
+// The resolution of a difference: the value's relative error over the step, times this. It is a few
+// such errors, divided by the relative error that callers ask for.
 constexpr double kRounding = 1e6;
 // Share of a term's nominal curvature below which differences across a hinge's edge say nothing.
 constexpr double kReach = 1e-3;
@@ -103,8 +103,8 @@ double RelativeError(const MatrixXd& mine, const MatrixXd& difference, double fl
 
 double Largest(const MatrixXd& m) { return m.size() == 0 ? 0.0 : m.cwiseAbs().maxCoeff(); }
 
-/// Sizes of what goes into the compared numbers before it cancels: sum of |du| |x| over a window
-/// for the largest u and residual, and for the whole sum.
+/// Sizes of the numbers that cancel in what is compared. The sum of |du| |x| is taken over a window
+/// for the largest u and residual, over all windows for the rest.
 struct Magnitudes {
   double u = 0.0, r = 0.0, value = 0.0, slope = 0.0;
 };
@@ -158,10 +158,10 @@ struct Sides {
   double dz = 0.0;
 };
 
-/// Differences of all residuals. A hinge's residual grows like u^1.5: where its u changes sign
-/// between the sides no central difference is any good, and as r is convex in u there the
-/// derivative must lie between the two one-sided ones; the nearer of them, or `mine` itself, is
-/// returned.
+/// Differences of all residuals. A hinge's residual grows like u^1.5. Where its u changes sign
+/// between the sides, a central difference is wrong. But r is convex in u there, so the derivative
+/// lies between the two one-sided differences. The nearer of these is returned, or `mine` itself if
+/// it lies between them.
 VectorXd ResidualDifference(const View& view, const Sides& s, const VectorXd& mine) {
   const VectorXd at = Stack(view, s.at, true), plus = Stack(view, s.plus, true),
                  minus = Stack(view, s.minus, true);
@@ -175,7 +175,7 @@ VectorXd ResidualDifference(const View& view, const Sides& s, const VectorXd& mi
   return difference;
 }
 
-/// The change of variables y = y0 + W z that the check runs in, and what it makes of derivatives.
+/// The change of variables y = y0 + W z that the check uses, and the derivatives in z.
 class Coordinates {
  public:
   Coordinates(int n, const Whitening* whitening)
@@ -242,8 +242,8 @@ DerivativeErrors CheckDerivatives(const View& view, const VectorXd& y, const Lag
     const double dz = step / direction.cwiseAbs().maxCoeff();
     longest = std::max(longest, dz);
     shortest = std::min(shortest, dz);
-    // On the edge of a hinge the gradient grows like u^2 to one side, and the error of its central
-    // difference with the step: extrapolated away by half a step.
+    // On the edge of a hinge the gradient grows like u^2 to one side. The error of its central
+    // difference is linear in the step. A half step extrapolates it away.
     if (!evaluate_sides(direction, 0.5 * dz)) return errors;
     hessian.col(j) = 2.0 * slope_difference();
     if (!evaluate_sides(direction, dz)) return errors;
@@ -256,8 +256,8 @@ DerivativeErrors CheckDerivatives(const View& view, const VectorXd& y, const Lag
   const Magnitudes sizes = MagnitudesOf(view, s.at, lagrangian);
   const MatrixXd mine = in.Rows(in.Rows(Dense(s.at.hessian)).transpose()).transpose();
   const VectorXd slope = in.Gradient(Eigen::Map<const VectorXd>(s.at.gradient.data(), n));
-  // The curvature that the terms have where they act: near the edge of a hinge all is smaller, but
-  // the differences reach over it.
+  // The curvature of the terms where they act. Near the edge of a hinge all curvature is smaller,
+  // but the differences reach beyond the edge.
   Lagrangian nominal = lagrangian;
   nominal.nominal_curvature = true;
   if (!view.Evaluate(y.data(), kAll, nominal, &s.plus)) return errors;

@@ -38,7 +38,7 @@ bool GapRule::Met(const Eigen::VectorXd& y, double cost, double violation) {
   const double allowed = gap_ * std::max(std::abs(cost), kSmallestCost);
   const double above = view_->constrained() ? check_->Above(*view_, y, &storage_) : Promised(y);
   if (above <= allowed) return true;
-  // Without a bound it has to fall by what would have been allowed.
+  // Without a bound the cost has to fall by the allowed gap.
   const double fall = std::isfinite(above) ? kFallen * (above - allowed) : allowed;
   look_below_ = std::min(cost - fall, std::nextafter(cost, -Problem::kInfinity));
   return false;

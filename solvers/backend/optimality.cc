@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The KKT conditions at one point, in variables that are each over their own size, 1 + |y_i|. What
-// a residual of the Lagrangian's gradient is worth is told by its Hessian, for a backend's
-// multipliers without the rows' weights: a metric with large weights is blind to what lies across
-// the rows. Multipliers are estimated as the least squares of that residual over the rows at their
-// bounds, without those of the wrong sign: across the rows that are kept nothing is left then, and
-// weights hold them. Shifts are shares of what is there, variable by variable: a stiff variable
-// must not hide a soft one. (J. Nocedal, S. Wright, Numerical Optimization, 2nd ed., chapters 12
-// and 18).
+// The KKT conditions at one point. Each variable is divided by its own size, 1 + |y_i|. The
+// Lagrangian's Hessian measures what a residual of its gradient is worth. With a backend's
+// multipliers this Hessian leaves out the rows' weights: a metric with large weights is blind to
+// slopes across the rows. Multipliers are estimated as the least squares of the residual over the
+// rows at their bounds, without those of the wrong sign. No residual is then left across the rows
+// that are kept, so weights may hold them. Shifts are relative to the diagonal, variable by
+// variable: a stiff variable must not hide a soft one. (J. Nocedal, S. Wright, Numerical
+// Optimization, 2nd ed., chapters 12 and 18).
 
 #include "touchdown/solvers/backend/optimality.h"
 
@@ -94,7 +94,8 @@ double OptimalityCheck::Above(const View& view, const Eigen::VectorXd& y, ViewEv
     if (Weigh().evaluated && shift_ <= kFirstShift) least = std::min(least, left_);
   };
   weigh();
-  // Of rows that push a point may stay off as far as it is from the optimum: which ones push is tried.
+  // Rows that push may be as far off their bounds as the point is off the optimum. Several
+  // distances are tried to find these rows.
   for (const double reach : kRemoteProbe) {
     if (rows_.size() == 0) break;
     at_bound_ = reach;
@@ -307,7 +308,7 @@ bool OptimalityCheck::Estimate() {
         }
       }
     }
-    // The worst of them, and those that are hardly better.
+    // The worst of them, and those that are nearly as bad.
     const auto wrong = [this](int r) {
       if (side_[r] == Side::kNone || side_[r] == Side::kBoth) return 0.0;
       return -(side_[r] == Side::kUpper ? 1.0 : -1.0) * lambda_[r] * norm_[r];

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is around a point that meets the first-order conditions: along the ways on which the cost
-// might fall, the softest ones, points are evaluated outwards for as long as it does not rise. One
-// that costs clearly less refutes the point: a saddle, an inflection, a plateau, or a valley whose
-// metric is lost to rounding. What lies behind a rise is another optimum's, and refutes nothing.
+// The neighbourhood of a point that meets the first-order conditions. Points are evaluated outwards
+// along the softest directions, where the cost might fall, as long as it does not rise. A point
+// that costs clearly less refutes the optimum: a saddle, an inflection, a plateau, or a valley
+// whose metric is lost to rounding. Points behind a rise belong to another optimum, and refute
+// nothing.
 
 #include <algorithm>
 #include <cmath>
@@ -152,8 +153,8 @@ double OptimalityCheck::OffRow(int row) const {
   return u - (side_[row] == Side::kLower ? rows_.lo(row) : rows_.hi(row));
 }
 
-/// Evaluates the Lagrangian's Hessian with the rows held that push, by this share of the cost's slope
-/// and curvature: those of side_.
+/// Evaluates the Lagrangian's Hessian and holds those rows of side_ whose multiplier exceeds this
+/// share of the cost's slope and curvature.
 bool OptimalityCheck::HoldPushing(double pushes) {
   const double least = pushes * std::max(Largest(gradient_), curvature_);
   for (int r = 0; r < rows_.size(); ++r) {
@@ -180,9 +181,9 @@ bool OptimalityCheck::CurvesUpwards() {
   return upwards;
 }
 
-/// way_, in which the Hessian that was evaluated last curves least and which is not soft_, by inverse
-/// iteration: measured by the point's size, or by the diagonal, of which the shift is a share: so a
-/// direction that falls steeply is not shifted above one that rises softly.
+/// Sets way_ by inverse iteration: the direction of least curvature in the last evaluated Hessian,
+/// other than soft_. Curvature is relative to the point's size, or to the diagonal. The shift is a
+/// share of that diagonal, so a steep direction is not shifted above a soft one.
 bool OptimalityCheck::SoftestWay(Metric metric) {
   if (!FactorShifted()) return false;
   for (std::size_t i = 0; i < way_.size(); ++i) way_[i] = i % 2 == 0 ? 1.0 : 0.5 + 1.0 / (2.0 + i);

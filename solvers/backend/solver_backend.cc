@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The part of a solve that is the same for every backend (a non-virtual interface, as in Drake's
-// SolverBase): refuse what the backend cannot take, check the caller's numbers, time the solve, and
-// return the best feasible point that the evaluator saw.
+// SolverBase). It refuses what the backend cannot take, checks the caller's numbers and times the
+// solve. It returns the best feasible point that the evaluator saw.
 
 #include "touchdown/solvers/backend/solver_backend.h"
 
@@ -166,7 +166,7 @@ void SolverBackend::Solve(const View& view, const WarmStart& warm, const Stop& s
     if (!evaluator_.must_stop()) DoSolve(view, warm, stop, &evaluator_, result);
     if (evaluator_.near_enough()) result->status = SolveStatus::kConverged;
   }
-  // A claim that the last iteration allowed has led to is looked at like others.
+  // A claim from the last allowed iteration is checked like others.
   const bool claimed = result->status == SolveStatus::kConverged &&
                        evaluator_.stop_status() == SolveStatus::kIterationLimit;
   if (evaluator_.must_stop() && result->usable() && !claimed) {
@@ -197,7 +197,7 @@ void SolverBackend::Solve(const View& view, const WarmStart& warm, const Stop& s
   result->cpu_s = ThreadCpuSeconds() - cpu_start;
 }
 
-/// What becomes of a backend's word.
+/// Turns a backend's claim into the final status.
 void SolverBackend::Judge(const View& view, const Eigen::VectorXd& start, SolverResult* result) {
   SolveStatus* status = &result->status;
   const ShareScope scope(&evaluator_, Share::kEvaluation);

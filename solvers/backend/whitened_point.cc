@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whitened evaluation. The first point keeps the caller's own y, and a point that is asked for
-// again is not transformed again: the evaluator recognises repeated points by their bits.
+// Whitened evaluation. The first point keeps the caller's own y. A point that is asked for again is
+// not transformed again, because the evaluator recognises repeated points by their bits.
 //
 // A free interval h in [lo, hi], of scale s in z, can be replaced by an angle:
-//   s h = s mid + s half sin(z_n / c),   c = s half cos(angle at the start),
-// of unit slope at the start, with a stationary point at each bound: an active bound is found like
-// any other minimum (as in F. James, M. Roos, "Minuit", Comput. Phys. Commun. 10 (1975) 343). A
-// start at a bound is moved inside by a hair, or its slope would vanish.
+//   s h = s mid + s half sin(z_n / c),   c = s half cos(angle at the start).
+// Its slope is 1 at the start, and each bound is a stationary point. So an active bound is found
+// like any other minimum (as in F. James, M. Roos, "Minuit", Comput. Phys. Commun. 10 (1975) 343).
+// A start at a bound is moved slightly inside: its slope would vanish.
 
 #include "solvers/backend/whitened_point.h"
 
@@ -92,8 +92,8 @@ void WhitenedPoint::MoveTo(const double* z) {
   } else {
     y_ = plain_;
   }
-  // Bounds were kept in z; dividing by the scale may have lost the last bit, and Ipopt relaxes
-  // them.
+  // Bounds were kept in z. Division by the scale may have lost the last bit, and Ipopt relaxes
+  // bounds.
   view_->MoveIntoBounds(y_.data());
 }
 

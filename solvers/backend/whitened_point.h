@@ -9,16 +9,17 @@
 
 namespace touchdown::solvers {
 
-/// The evaluator as a backend sees it that works on whitened variables z (whitening.h): one point
-/// at a time, its objective, gradient and rows in z. Without whitening z is the view's y; so it is
-/// where the costs' nominal curvature is singular, as that of a linear cost: such a metric means
-/// nothing; and where variables have bounds, which are none in z.
+/// The evaluator for backends that work on whitened variables z (whitening.h). It evaluates one
+/// point at a time: objective, gradient and rows in z. Without whitening z is the view's y. The
+/// same holds where the costs' nominal curvature is singular, such as that of a linear cost,
+/// because that metric means nothing. It also holds where variables have bounds, because z has
+/// none.
 class WhitenedPoint {
  public:
   struct Settings {
     bool whiten = true;
-    /// For methods without bounds, or that take their step size from them: z's last number becomes
-    /// an angle (whitened_point.cc), for which every value is inside the bounds of a free interval.
+    /// For methods that know no bounds, or take their step size from them. z's last number becomes
+    /// an angle (whitened_point.cc). Every value of it keeps a free interval inside its bounds.
     bool interval_as_angle = false;
   };
 
@@ -29,9 +30,9 @@ class WhitenedPoint {
   /// cannot be evaluated. All arguments outlive the solve. Does not allocate.
   bool Begin(const View& view, const double* y, const Settings& settings, Evaluator* evaluator);
 
-  /// Goes on from z with the metric of that place; z() is then the same point in it. Where the
-  /// point cannot be evaluated the metric stays. For methods that have used up their leg
-  /// (MetricLegs). Does not allocate.
+  /// Continues from z with the metric at that point; z() is then the same point in it. If the point
+  /// cannot be evaluated, the metric stays. For methods at the end of a leg (MetricLegs). Does not
+  /// allocate.
   void RenewMetric(const View& view, const double* z);
 
   int size() const { return static_cast<int>(z_.size()); }
@@ -52,14 +53,14 @@ class WhitenedPoint {
   /// In place: a dense row in y becomes one in z.
   void RowToWhite(double* row) const;
 
-  /// Whether the decrease that the metric still promises at the best point, |g|^2 / 2 in z without
-  /// a component of the interval out of its bounds, is negligible beside its cost (or a small share
-  /// of the first one). Never without whitening, where |g| has no such meaning. Moves to that
-  /// point.
+  /// Whether the metric promises only a negligible decrease at the best point. The decrease is
+  /// |g|^2 / 2 in z, compared with its cost (or a small share of the first cost). The interval's
+  /// component of g is left out if it points out of the bounds. Always false without whitening,
+  /// where |g| has no such meaning. Moves to that point.
   bool StationaryAtBest(double first_cost);
 
-  /// The best point so far changed since the last call, or since Begin. `step` receives how far it
-  /// moved in the view's variables.
+  /// Whether the best point so far changed since the last call, or since Begin. `step` receives how
+  /// far it moved in the view's variables.
   bool Improved(double* step);
 
  private:
@@ -80,9 +81,9 @@ class WhitenedPoint {
 };
 
 /// How long a quasi-Newton method keeps one metric. Hinges that are inactive at the start have no
-/// curvature in it; where many of them matter the method has to find it by itself, and a new metric
-/// at a better place is cheaper. Each leg is half as long again as the one before, so that the
-/// method's own convergence is left alone in the end.
+/// curvature in the metric. If many of them matter, the method has to find their curvature itself.
+/// A new metric at a better point costs less. Each leg is 1.5 times as long as the one before, so
+/// that the method can converge undisturbed in the end.
 class MetricLegs {
  public:
   static OptionSpec Option() {

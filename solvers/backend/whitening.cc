@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The metric of the whitened view. Its Hessian is positive semidefinite by construction; where
-// terms leave directions free (an explicit endpoint's spline without its rows), a small multiple of
-// the mean diagonal makes it definite.
+// The metric of the whitened view. Its Hessian is positive semidefinite by construction. Terms may
+// leave directions free (an explicit endpoint's spline without its rows). A small multiple of the
+// mean diagonal then makes it definite.
 
 #include "touchdown/solvers/backend/whitening.h"
 

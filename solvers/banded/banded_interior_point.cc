@@ -1,20 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Primal-dual interior point for  min f(y)  s.t.  g(y) <= 0,  g a row with one of its bounds:
-//   g + s = e,  s v = mu,  grad f + G^T z = 0,  s, v > 0,  v = z,
-// where e = 0, or in the elastic mode e > 0 costs a price p each: e w = mu, w = p - z > 0. The
-// slack of an equality costs that price, too: v = p + z; and outside of the elastic mode it has
-// neither s nor e. With s, z, e, w eliminated a Newton step is
+// Primal-dual interior point for
+//   min f(y)  s.t.  g(y) <= 0,  g a row with one of its bounds:
+//   g + s = e,  s v = mu,  grad f + G^T z = 0,  s, v > 0,  v = z.
+// Here e = 0. In the elastic mode e > 0 costs a price p each: e w = mu, w = p - z > 0. The slack of
+// an equality costs that price, too: v = p + z. Outside of the elastic mode it has neither s nor e.
+// A Newton step, with s, z, e, w eliminated, is
 //   (H + G^T W G) dy = -grad f - G^T (z + W k),   W = 1 / (s/v + e/w),   k = g + mu/v - mu/w,
-//   dz = W (G dy + k),
-// with H the Lagrangian's Hessian, curvature of the rows included. Every row is a window, so that
-// G^T W G fills nothing: the matrix stays an arrowhead of the band, and one factor serves
-// Mehrotra's predictor and corrector. For an equality without s and e the same is a proximal step
-// of the method of multipliers, with a W so large that a step leaves little of the linear row, and
-// that the matrix is definite where H is along the rows. A merit function guards the step where
-// rows are curved or not convex; where these fast steps stall, the barrier method's careful ones
-// take over. Sources: S. Mehrotra, SIAM J. Optim. 2 (1992) 575; J. Nocedal, S. Wright, Numerical
-// Optimization, 2nd ed., chapter 19; the elastic form: P. Gill, W. Murray, M. Saunders, SIAM Rev.
-// 47 (2005) 99; equalities: M. Friedlander, D. Orban, Math. Prog. Comp. 4 (2012) 71.
+//   dz = W (G dy + k).
+// H is the Lagrangian's Hessian, including the curvature of the rows. Every row is a window, so
+// G^T W G adds no fill-in. The matrix stays a banded arrowhead, and one factor serves Mehrotra's
+// predictor and corrector. For an equality without s and e this is a proximal step of the method of
+// multipliers. Its W is so large that a step leaves little of the linear row. With it the matrix is
+// definite if H is definite along the rows. A merit function guards the step where rows are curved
+// or not convex. Where these fast steps stall, the barrier method's careful ones take over.
+// Sources: S. Mehrotra, SIAM J. Optim. 2 (1992) 575; J. Nocedal, S. Wright, Numerical Optimization,
+// 2nd ed., chapter 19; the elastic form: P. Gill, W. Murray, M. Saunders, SIAM Rev. 47 (2005) 99;
+// equalities: M. Friedlander, D. Orban, Math. Prog. Comp. 4 (2012) 71.
 
 #include "solvers/banded/banded_interior_point.h"
 
@@ -27,7 +28,7 @@ namespace touchdown::solvers {
 
 namespace {
 
-/// Share of the way to s = 0 or z = 0 that a step may go, at least; it nears 1 with the gap, so
+/// Least share of the way to s = 0 or z = 0 that a step may go. It approaches 1 with the gap, so
 /// that the last steps converge quadratically.
 constexpr double kToBoundary = 0.995;
 constexpr double kFirstSlack = 0.1;  // least slack of the first point, share of the largest row
@@ -35,21 +36,21 @@ constexpr double kFirstRoom =
     1e-2;  // of its variables to their bounds, share of these and of their distance
 constexpr double kFirstMu = 0.1;  // complementarity of the first point, share of the cost
 constexpr double kNoCost = 1e-6;  // a cost that is less has not begun
-/// Share of the merit by which a fast step may raise it. Over curved rows the good steps do (N.
-/// Maratos, 1978); but so do steps that go round in circles: later ones may lose hardly anything.
+/// A fast step may raise the merit by this share. Good steps over curved rows do so (N. Maratos,
+/// 1978), but so do steps that cycle. Late steps may therefore raise it hardly at all.
 constexpr double kFastSlack = 1.0;
 constexpr double kLateSlack = 1e-4;
 constexpr double kCarefulSlack = 1e-12;  // rounding
 constexpr int kLateStep = 15;
 constexpr double kClearImprovement = 1e-3;  // of the cost, less than a point that is converged
 constexpr double kShortestStep = 1e-8;
-/// So many steps in a row that hardly move: this mode leads nowhere.
+/// After so many steps in a row that hardly move, the mode gives up.
 constexpr int kMostStalls = 3;
 constexpr double kStall = 1e-2;
 constexpr int kMostFastSteps = 20;  // they converge in 5 to 15 where they do
 constexpr int kMostCarefulSteps = 200;
 constexpr double kRounding = 1e-8;
-constexpr double kLeastTarget = 0.1;  // of the gap asked for
+constexpr double kLeastTarget = 0.1;  // of the requested gap
 constexpr double kLeastShare = 1e-6;  // of the gap there is, that a step aims at
 constexpr double kLeastShareCurvedRows = 1e-2;
 constexpr double kNearlyMet = 1e-4;
@@ -150,7 +151,7 @@ const BandedInteriorPoint::Box* BandedInteriorPoint::BoxOf(const Side& side) con
   return side.term < terms_ ? nullptr : &boxes_[side.term - terms_];
 }
 
-/// Their values may be others in each solve.
+/// Reads the values of the bounds, which may differ in each solve.
 void BandedInteriorPoint::ReadBounds(const View& view) {
   for (const Side& side : sides_) {
     if (side.term < terms_) continue;
@@ -187,9 +188,10 @@ SolveStatus BandedInteriorPoint::Attempts(const View& view, const double* start,
   std::copy(start, start + y_.size(), y_.begin());
   invariant_ = tolerances.invariant;
   SolveStatus status = Attempt(view, {}, multipliers, tolerances, evaluator);
-  // Rows that cannot be met, or too bent a problem: the least costly violation instead, first by
-  // the fast steps, then by the careful ones, each at a price and at a much higher one. They go on
-  // from where the last ones stalled: the best point may be a feasible start, far from anything.
+  // Rows that cannot be met, or a problem that is too nonlinear: look for the least costly
+  // violation instead. Fast steps come first, then careful ones, each at a price and at a much
+  // higher one. They continue from where the last ones stalled: the best point may be a feasible
+  // start far away.
   const std::vector<std::vector<double>> none;
   const auto once_more = [&](const Mode& mode, const auto& known) {
     if (!mode.elastic) {
@@ -203,8 +205,8 @@ SolveStatus BandedInteriorPoint::Attempts(const View& view, const double* start,
       if (failed()) once_more({true, careful, price}, none);
     }
   }
-  // The elastic mode has found rows that can be met; equalities it pinches from both sides, until
-  // rounding is all that is left of their metric.
+  // The elastic mode has found that the rows can be met. It pinches equalities from both sides,
+  // until only rounding is left of their metric.
   const bool pinched = mode_.elastic && has_equalities_ && status == SolveStatus::kConverged;
   const bool known_feasible = evaluator->best_violation() <= Evaluator::kFeasible;
   if (known_feasible && (failed() || pinched || status == SolveStatus::kInfeasible)) {
@@ -212,7 +214,7 @@ SolveStatus BandedInteriorPoint::Attempts(const View& view, const double* start,
     once_more({}, pinched ? multiplier_ : none);
     if (pinched && failed()) status = SolveStatus::kUnconfirmed;
   }
-  // Steps uphill may have left a better valley: careful ones go down in it.
+  // Steps uphill may have left a better valley: careful ones descend in it.
   if (status == SolveStatus::kConverged && left_better_) {
     once_more({.careful = true}, none);
     if (failed() || left_better_) status = SolveStatus::kUnconfirmed;
@@ -307,7 +309,7 @@ SolveStatus BandedInteriorPoint::Attempt(const View& view, const Mode& mode,
   return evaluator->must_stop() ? evaluator->stop_status() : SolveStatus::kNumericalFailure;
 }
 
-/// Variables off their bounds, so that their slacks begin as what they are, and stay that.
+/// Moves variables off their bounds, so that their slacks start at their true values and stay true.
 void BandedInteriorPoint::MoveInside(const View& view) {
   for (int i = 0; i < view.blocks() * view.block_size() && view.bounded(); ++i) {
     const double lower = view.lower(i), upper = view.upper(i), width = upper - lower;
@@ -319,7 +321,7 @@ void BandedInteriorPoint::MoveInside(const View& view) {
   }
 }
 
-/// Factors the last point's matrix, with more of a shift than it needs at least.
+/// Factors the last point's matrix. A shift is at least some times the one it needs.
 bool BandedInteriorPoint::Factor(Evaluator* evaluator, double* shift) {
   const BorderedBandMatrix& H = evaluator->last().hessian;
   if (!FactorDefinite(H, &factor_, curvature_, shift)) return false;
@@ -328,8 +330,8 @@ bool BandedInteriorPoint::Factor(Evaluator* evaluator, double* shift) {
   return FactorDefinite(H, &factor_, curvature_, shift);
 }
 
-/// The metric of a step is blind to what is left across an equality: its multiplier takes one step
-/// more.
+/// The metric of a step does not see what is left across an equality. Its multiplier takes one more
+/// step.
 void BandedInteriorPoint::CorrectEqualities(const View& view, Evaluator* evaluator) {
   SetCorrection(false);
   Direction(view, Complementarity({0.0, 0.0}), evaluator);
@@ -340,8 +342,8 @@ void BandedInteriorPoint::CorrectEqualities(const View& view, Evaluator* evaluat
   }
 }
 
-/// Mehrotra's predictor and corrector. Returns the complementarity aimed at, `least` or more: far
-/// below what is asked for there is only rounding.
+/// Mehrotra's predictor and corrector. Returns the complementarity aimed at, which is `least` or
+/// more: far below what is asked for there is only rounding.
 double BandedInteriorPoint::FastDirection(const View& view, const Errors& errors, double least,
                                           Evaluator* evaluator) {
   const double mu = Complementarity({0.0, 0.0});
@@ -349,7 +351,7 @@ double BandedInteriorPoint::FastDirection(const View& view, const Errors& errors
   Direction(view, 0.0, evaluator);
   if (pairs_ == 0) return 0.0;
   const double ratio = Complementarity(LongestStep(errors.gap)) / mu;
-  // Rows that are far from met bend: what the predictor thinks of the gap is not to be trusted.
+  // Rows that are far from met are curved: the gap that the predictor expects is unreliable.
   const bool bend = has_equalities_ && !mode_.elastic && errors.primal > kNearlyMet;
   const double lowest = bend ? kLeastShareCurvedRows : kLeastShare;
   const double target = std::max(mu * std::clamp(ratio * ratio * ratio, lowest, 1.0), least);
@@ -371,8 +373,8 @@ double BandedInteriorPoint::CarefulDirection(const View& view, const Errors& err
   return *barrier;
 }
 
-/// Halves the primal step until the merit function takes it; trial_ and next_ are the point then,
-/// and the evaluator's last.
+/// Halves the primal step until the merit function accepts it. trial_, next_ and the evaluator's
+/// last point are then that point.
 BandedInteriorPoint::StepLengths BandedInteriorPoint::LineSearch(double target, StepLengths length,
                                                                  double slack,
                                                                  Evaluator* evaluator) {
@@ -414,8 +416,8 @@ BandedInteriorPoint::Errors BandedInteriorPoint::MeasureErrors(const View& view,
 
 double BandedInteriorPoint::PointSize() const { return 1.0 + Largest(y_); }
 
-/// Whatever constant is in the cost: what has been gained, or the slope times the point's size; but
-/// no more than the cost itself, of which less may be left than was gained.
+/// The cost's size, whatever constant the cost contains: the gain so far, or the slope times the
+/// point's size. At most the cost itself, which may be less than the gain.
 double BandedInteriorPoint::CostSize(const ViewEvaluation& at, double first) const {
   const double value = at.full.value;
   const double slope = Largest(at.gradient);
@@ -423,8 +425,8 @@ double BandedInteriorPoint::CostSize(const ViewEvaluation& at, double first) con
   return std::max(std::min(gained, std::max(std::abs(value), kLeastCost)), kSmallestCost);
 }
 
-/// What rows gain together by any step that is as long as the point is large is little of what they
-/// violate.
+/// Whether any step as long as the point's size gains little on the rows, compared with their
+/// violation.
 bool BandedInteriorPoint::RowsContradict(const std::vector<double>& gradient) const {
   double pull = 0.0, off = 0.0;
   for (std::size_t i = 0; i < right_.size(); ++i) {
@@ -438,7 +440,8 @@ bool BandedInteriorPoint::RowsContradict(const std::vector<double>& gradient) co
   return pull * PointSize() <= kContradiction * off;
 }
 
-/// Of rows, a share of the latest direction further: those of equalities may begin with none.
+/// Over the rows, a share of the latest direction further: multipliers of equalities may begin at
+/// 0.
 double BandedInteriorPoint::LargestMultiplier(double share) const {
   double largest = 0.0;
   for (const Side& side : sides_) {
@@ -456,8 +459,8 @@ double BandedInteriorPoint::Give(const Side& side, const Rows& rows, int i) cons
   return rows.s[i] / rows.v[i] + (Elastic(side) ? rows.e[i] / rows.w[i] : 0.0);
 }
 
-/// How far equalities give: by the cost's curvature in the most curved of the variables of each,
-/// and their slopes here.
+/// How far equalities give: set by their slopes here and by the cost's curvature in the most curved
+/// of their variables.
 bool BandedInteriorPoint::WeighEqualities(const View& view, Evaluator* evaluator) {
   if (!evaluator->EvaluateLagrangian(y_.data(), {})) return false;
   const ViewEvaluation& at = evaluator->last();
@@ -517,7 +520,7 @@ void BandedInteriorPoint::FindOpposites(const View& view) {
   }
 }
 
-/// The same to the last bit, with their slopes: written twice.
+/// Whether two terms have the same rows and slopes to the last bit: a row written twice.
 bool BandedInteriorPoint::AreTheSameRows(const View& view, const ViewEvaluation& at, int term,
                                          int other) const {
   const TermBlock &a = at.full.terms[term], &b = at.full.terms[other];
@@ -703,7 +706,7 @@ void BandedInteriorPoint::SetCorrection(bool predicted) {
   }
 }
 
-/// Where nothing curves along the rows, nothing tells how far a step may go.
+/// Without curvature along the rows, nothing limits the length of a step.
 bool BandedInteriorPoint::StepIsTooLong() const {
   return Largest(step_) > kLongestStep * PointSize();
 }
@@ -761,7 +764,7 @@ void BandedInteriorPoint::Move(const StepLengths& length) {
   }
 }
 
-/// f + p sum e - mu sum (log s + log e) + penalty sum |g + s - e|, with the rows just read; an
+/// f + p sum e - mu sum (log s + log e) + penalty sum |g + s - e|, with the rows just read. An
 /// equality's s costs p, too.
 double BandedInteriorPoint::Merit(double cost, double mu, double penalty, const Rows& rows) const {
   double merit = cost;

@@ -9,8 +9,8 @@
 
 namespace touchdown::solvers {
 
-/// A primal-dual interior point on a problem with rows lo <= u <= hi, equalities among them, and
-/// with bounds on variables, inside of which all of its points are.
+/// A primal-dual interior point on a problem with rows lo <= u <= hi, equalities among them.
+/// Variables may have bounds; all of its points are inside them.
 class BandedInteriorPoint {
  public:
   struct Tolerances {
@@ -45,8 +45,8 @@ class BandedInteriorPoint {
     double sign = 1.0;
     double bound = 0.0;
     bool equality = false;
-    /// Another that may be of the same rows from the other side of the bound: these are equalities,
-    /// and there are no slacks.
+    /// A side that may have the same rows from the other side of the bound. Together they are
+    /// equalities without slacks.
     int opposite = -1;
     bool merged =
         false;  ///< in this solve it is so: one of the two is the equality, the other has no rows

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Newton's method on an arrowhead Hessian. Full steps almost always: value, gradient and Hessian of
-// a full step come out of one pass, so that it needs no second one if it is accepted; of a shorter
-// step, and of the one after it, the value comes first. Where the Hessian is indefinite (a
-// nonconvex term, a free interval) it is shifted until it is not; a border that alone is indefinite
-// takes its absolute value, which keeps the fast directions as they are. Source: J. Nocedal, S.
-// Wright, Numerical Optimization, 2nd ed., sections 3.4 and 3.5.
+// Newton's method on an arrowhead Hessian. Almost all steps are full ones. One pass computes value,
+// gradient and Hessian of a full step, so that an accepted one needs no second pass. A shorter
+// step, and the step after it, compute the value first. An indefinite Hessian (a nonconvex term, a
+// free interval) is shifted until it is definite. A border that alone is indefinite takes its
+// absolute value, which keeps the fast directions as they are. Source: J. Nocedal, S. Wright,
+// Numerical Optimization, 2nd ed., sections 3.4 and 3.5.
 
 #include "solvers/banded/banded_newton.h"
 
@@ -83,7 +83,7 @@ SolveStatus BandedNewton::Run(const View& view, const double* start, const Toler
   return evaluator->stop_status();
 }
 
-/// Where hardly anything curves, nothing tells how far a step may go.
+/// Without curvature, nothing limits the length of a step.
 double BandedNewton::Shorten() {
   const double share = kNewtonLongestStep * (1.0 + Largest(y_)) / Largest(step_);
   if (share >= 1.0) return 1.0;
@@ -91,9 +91,9 @@ double BandedNewton::Shorten() {
   return share;
 }
 
-/// Halves the step until it decreases the value enough; y_ becomes the accepted point, which is the
-/// evaluator's last. Returns the accepted share of the step, 0 if there is none. The first trial
-/// point is evaluated with `derivatives`, or like the others without, and then again if it is
+/// Halves the step until it decreases the value enough. y_ and the evaluator's last point become
+/// the accepted point. Returns the accepted share of the step, 0 if there is none. With
+/// `derivatives` the first trial point is evaluated with them. Other points get them once they are
 /// accepted.
 double BandedNewton::LineSearch(double value, double slope, bool derivatives,
                                 Evaluator* evaluator) {

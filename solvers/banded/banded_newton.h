@@ -21,7 +21,7 @@ class BandedNewton {
   };
 
   void Prepare(const View& view);
-  /// The last run ended by the gap, before its promise was as small as `own` asks.
+  /// The last run ended by the gap, before its promise was as small as `own` demands.
   bool ended_near() const { return ended_near_; }
   /// Does not allocate.
   SolveStatus Run(const View& view, const double* start, const Tolerances& tolerances,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The backend `banded`: Newton's method or the interior point, whichever the problem asks for.
+// The backend `banded`: Newton's method or the interior point, whichever the problem needs.
 
 #include "solvers/banded/banded_solver.h"
 

@@ -7,10 +7,10 @@
 
 namespace touchdown::solvers {
 
-/// The backend `banded`, which lives off the structure: a block-banded Hessian with at most one
-/// border row (a free interval) is factored in time linear in the number of blocks. Newton's method
-/// without constraint rows, a primal-dual interior point with them, elastic where they cannot be
-/// met. Solve does not allocate.
+/// The backend `banded`. The Hessian is block-banded with at most one border row (a free interval),
+/// and is factored in time linear in the number of blocks. Newton's method without constraint rows;
+/// with them a primal-dual interior point, elastic where they cannot be met. Solve does not
+/// allocate.
 std::unique_ptr<SolverBackend> MakeBandedSolver();
 
 }  // namespace touchdown::solvers

@@ -2,8 +2,8 @@
 // Limited-memory BFGS by Ceres's GradientProblem, on whitened variables z. Ceres knows no bounds
 // here, so a free interval is replaced by an angle (whitened_point.cc).
 //
-// Statuses are Ceres's own: convergence, iteration limit; a line search that fails is convergence
-// only if the decrease |g|^2/2 that the metric still promises is negligible.
+// Statuses are Ceres's own: convergence, iteration limit. A failed line search is convergence only
+// if the decrease |g|^2/2 that the metric still promises is negligible.
 
 #include "solvers/ceres/ceres_lbfgs.h"
 

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Trust-region least squares by Ceres Solver. One residual block per window and term, on the
-// reduced blocks that the window reaches. All numbers of one point come from one pass over the
-// Problem, made in Ceres's evaluation callback; the residual blocks only copy their slice, so that
-// the problem is never evaluated twice and no term knows of Ceres. The trust region starts so wide
-// that the first step is Gauss-Newton's: the landing problem is nearly quadratic once its pairs are
-// fixed. Inside the region Powell's dogleg is the default: Levenberg-Marquardt's damping measures
-// steps in the unwhitened variables, and where it has to act on a long spline it crawls (a hundred
-// times the iterations on one problem in fifty). A rejected dogleg step needs no new factorisation.
+// Trust-region least squares by Ceres Solver. There is one residual block per window and term, on
+// the reduced blocks that the window reaches. Ceres's evaluation callback computes all numbers of a
+// point in one pass over the Problem, and the residual blocks only copy their slice. So the problem
+// is never evaluated twice, and no term knows of Ceres. The trust region starts so wide that the
+// first step is Gauss-Newton's: the landing problem is nearly quadratic once its pairs are fixed.
+// Inside the region Powell's dogleg is the default. Levenberg-Marquardt's damping measures steps in
+// the unwhitened variables. Where it has to act on a long spline, it needs many iterations (a
+// hundred times as many on one problem in fifty). A rejected dogleg step needs no new
+// factorisation.
 
 #include "solvers/ceres/ceres_solver.h"
 
@@ -126,7 +127,7 @@ class WindowResiduals : public ceres::EvaluationCallback {
   }
 
   /// Gradients come with every point: almost every trial step is accepted, and a second pass for
-  /// them would cost more than they do. Past a budget no new point is evaluated any more.
+  /// them would cost more than they do. Past a budget no further point is evaluated.
   void PrepareForEvaluation(bool evaluate_jacobians, bool new_evaluation_point) override {
     const ShareScope scope(evaluator_, Share::kAdapter);
     const bool valid = !(new_evaluation_point && evaluator_->must_stop()) &&
@@ -181,7 +182,7 @@ class ProgressWatch : public ceres::IterationCallback {
   int told_evaluations_;
 };
 
-/// How often a free interval may be held at a bound or let go.
+/// How often a free interval may be held at a bound or released.
 constexpr int kMostRounds = 4;
 
 class CeresSolver : public SolverBackend {
@@ -209,7 +210,7 @@ class CeresSolver : public SolverBackend {
   void DoSolve(const View& view, const WarmStart& warm, const Stop& /*stop*/, Evaluator* evaluator,
                SolverResult* result) override {
     std::copy(warm.y.data(), warm.y.data() + warm.y.size(), y_.begin());
-    // The first evaluation also tells which windows are active now.
+    // The first evaluation also shows which windows are active now.
     if (!evaluator->Evaluate(y_.data(), {.gradient = true, .residual = true})) {
       result->status = SolveStatus::kEvaluationFailed;
       return;
@@ -227,8 +228,8 @@ class CeresSolver : public SolverBackend {
     ceres::Problem::Options problem_options;
     problem_options.evaluation_callback = &windows_;
     problem_options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    // They look for parameter blocks that repeat, differ in size or overlap: those of a view are
-    // distinct slices of y_.
+    // The checks look for parameter blocks that repeat, differ in size or overlap. Those of a view
+    // are distinct slices of y_.
     problem_options.disable_all_safety_checks = true;
     ceres::Problem problem(problem_options);
     windows_.AddTo(&problem);
@@ -249,9 +250,10 @@ class CeresSolver : public SolverBackend {
         more ? SolveStatus::kNumericalFailure : Status(summary.termination_type, *evaluator);
   }
 
-  /// Ceres projects its steps onto bounds, but computes them as if there were none: with the
-  /// interval at a bound it stops beside the optimum. So the interval is held there and the rest
-  /// solved again, and let go where the objective falls inwards. True if there is more to solve.
+  /// Ceres projects its steps onto bounds, but computes them as if there were none. With the
+  /// interval at a bound it stops beside the optimum. So the interval is held there, and the rest
+  /// is solved again. It is released where the objective falls inwards. Returns true if there is
+  /// more to solve.
   bool ChangeHold(const View& view, Evaluator* evaluator, bool* held, ceres::Problem* problem) {
     const ShareScope scope(evaluator, Share::kAdapter);
     double* h = &y_.back();

@@ -7,9 +7,9 @@
 
 namespace touchdown::solvers {
 
-/// While one lives, Ceres's warnings are not printed: they do not heed its own option to be silent.
-/// glog's level belongs to the process, so what others log meanwhile below an error that ends it is
-/// lost too.
+/// While an instance lives, Ceres's warnings are not printed: they ignore its own option to be
+/// silent. glog's level belongs to the process. So messages of others are lost too, unless they end
+/// the process.
 class QuietGlog {
  public:
   QuietGlog() {

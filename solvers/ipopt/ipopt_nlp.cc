@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The callbacks that Ipopt makes. It asks for objective, gradient, rows and Jacobian one by one;
-// the evaluator answers the repeated point from its cache, and every first question brings the
-// gradients along, since almost every trial point is accepted. A whitened row is dense from its
-// first column on (forward substitution), an unwhitened one holds its window.
+// The callbacks that Ipopt makes. It asks for objective, gradient, rows and Jacobian one by one,
+// and the evaluator answers for the repeated point from its cache. The first question at a point
+// also computes the gradients, since almost every trial point is accepted. A whitened row is dense
+// from its first column on (forward substitution), an unwhitened one holds its window.
 
 #include "solvers/ipopt/ipopt_nlp.h"
 
@@ -94,8 +94,8 @@ bool IpoptNlp::get_bounds_info(Index n, Number* x_l, Number* x_u, Index m, Numbe
   }
   int equalities = 0;
   for (int r = 0; r < m; ++r) equalities += rows_.lo(r) == rows_.hi(r);
-  // More equalities than variables are refused, though they may agree: as narrow rows they are
-  // solved.
+  // Ipopt refuses more equalities than variables, even if they are consistent. It solves them as
+  // narrow rows.
   const double room = equalities > n ? kNarrow : 0.0;
   for (int r = 0; r < m; ++r) {
     const bool equality = rows_.lo(r) == rows_.hi(r);
@@ -223,7 +223,7 @@ void IpoptNlp::finalize_solution(Ipopt::SolverReturn status, Index n, const Numb
   report_.has_multipliers = true;
   for (int i = 0; i < n; ++i) bound_multipliers_[i] = z_U[i] - z_L[i];
   if (view_->free_interval()) bound_multipliers_[n - 1] *= point_.interval_scale();
-  // One on the way here may have cost less by as much as it was off its rows.
+  // An earlier point may have cost less only because it violated its rows.
   const bool solved = status == Ipopt::SUCCESS || status == Ipopt::STOP_AT_ACCEPTABLE_POINT;
   if (solved && !evaluator_->must_stop() && point_.Evaluate(x, false)) {
     evaluator_->PreferLastIfFeasible();

@@ -18,7 +18,7 @@ class IpoptNlp : public Ipopt::TNLP {
   /// after one.
   struct Ended {};
 
-  /// What Ipopt told at its end or, where it was ended, after its last iteration.
+  /// Ipopt's own report at its end or, if it was stopped, after its last iteration.
   struct Report {
     bool told = false;  ///< it has made an iteration
     double primal_infeasibility = 0.0;

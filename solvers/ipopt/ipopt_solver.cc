@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The backends `ipopt` and `ipopt-lm` (A. Waechter, L. Biegler, Math. Program. 106 (2006) 25).
-// Written for Ipopt 3.11 and later. With the exact Hessian a few iterations reach rounding, each at
-// the price of a call of MUMPS; with a limited-memory one the landing problem converges only
-// whitened, so `ipopt-lm` is whitened always, its rows' Jacobian made dense by it. The monotone
-// barrier beats the adaptive one on these problems.
+// Written for Ipopt 3.11 and later. With the exact Hessian a few iterations reach rounding, and
+// each costs a call of MUMPS. With a limited-memory Hessian the landing problem converges only if
+// it is whitened. So `ipopt-lm` is always whitened, which makes its rows' Jacobian dense. The
+// monotone barrier is faster than the adaptive one on these problems.
 //
-// Statuses. "Solved", also to the acceptable level, is convergence; local infeasibility is
-// kInfeasible; a number that is not finite kEvaluationFailed. Where Ipopt can no longer move, the
-// point has converged only if its last infeasibilities were small.
+// Statuses. "Solved", also to the acceptable level, is convergence. Local infeasibility is
+// kInfeasible, and a number that is not finite is kEvaluationFailed. If Ipopt can no longer move,
+// the point has converged only if its last infeasibilities were small.
 
 #include "solvers/ipopt/ipopt_solver.h"
 
@@ -27,8 +27,8 @@ namespace {
 /// as converged.
 constexpr double kStationary = 1e-6;
 
-/// Held while anything of Ipopt's runs, in whichever instance. A term may solve with another one meanwhile: it is called
-/// between Ipopt's steps.
+/// Held while any code of Ipopt runs, in whichever instance. A term may solve with another instance
+/// meanwhile: it is called between Ipopt's steps.
 std::recursive_mutex& IpoptMutex() {
   static std::recursive_mutex mutex;
   return mutex;

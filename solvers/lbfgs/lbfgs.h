@@ -9,7 +9,7 @@
 
 namespace touchdown::solvers {
 
-/// The defaults are those of EGO-Planner (Zhou et al., RA-L 2021), but for the tolerance.
+/// The defaults are those of EGO-Planner (Zhou et al., RA-L 2021), except the tolerance.
 struct LbfgsOptions {
   double gradient_tolerance = 1e-5;  ///< converged at |g| <= this max(1, |x|)
   int max_iterations = 200;          ///< 0: no limit

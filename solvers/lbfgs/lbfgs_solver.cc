@@ -2,8 +2,8 @@
 // The backend `lbfgs` sees the whitened view; a free interval is an angle (whitened_point.cc). An
 // evaluation that fails bounds the line search from above.
 //
-// Statuses: a gradient below its tolerance is convergence; so is a line search that gives up where
-// the decrease |g|^2/2 that the metric still promises is negligible.
+// Statuses: a gradient below its tolerance is convergence. A line search that gives up is
+// convergence if the decrease |g|^2/2 that the metric still promises is negligible.
 
 #include "solvers/lbfgs/lbfgs_solver.h"
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Section numbers are those of More and Thuente 1994. The interval of uncertainty has its end
-// `best_` where the function is least so far and `other_`, the far end once the minimiser is
-// bracketed. While no step has met the decrease with a rising slope, the interval is updated by
-// psi(a) = f(a) - f(0) - mu a f'(0) (section 2), afterwards by f itself (section 3); the trial step
-// in it comes from cubic and quadratic interpolation in four cases (section 4).
+// Section numbers are those of More and Thuente 1994. The interval of uncertainty ends at `best_`,
+// where the function is least so far, and at `other_`, the far end once the minimiser is bracketed.
+// At first psi(a) = f(a) - f(0) - mu a f'(0) updates the interval (section 2). Once a step has met
+// the decrease with a rising slope, f itself does (section 3). Cubic and quadratic interpolation in
+// four cases gives the trial step in it (section 4).
 
 #include "solvers/lbfgs/more_thuente.h"
 
@@ -142,7 +142,7 @@ LineSearchState MoreThuente::Observe(double value, double slope) {
   return state_;
 }
 
-/// One update of the interval and the next trial step; false where rounding spoilt the values.
+/// One update of the interval and the next trial step; false where rounding corrupted the values.
 bool MoreThuente::Update(Point* best, Point* other, const Point& t) {
   if (bracketed_) {
     const double low = std::min(best->step, other->step), high = std::max(best->step, other->step);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Right-looking Cholesky of a block band, by L D L^T with L scaled in the end, then the border by
-// one triangular solve. The factor is stored column by column as panels: scalar column c of block
-// column j holds the rows of blocks j .. j + half one after another, padded with zeros, so that
+// Right-looking Cholesky of a block band, by L D L^T with L scaled in the end. The border follows
+// by one triangular solve. The factor is stored column by column as panels. Scalar column c of
+// block column j holds the rows of blocks j .. j + half one after another, padded with zeros. So
 // every update of the trailing matrix is a run of whole vector registers and needs no tail.
 // Diagonal elements are stored inverted.
 
@@ -37,8 +37,8 @@ void LoadBlocks(const BorderedBandMatrix& A, double shift, int stride, double* b
   }
 }
 
-/// Columns of scalars in groups of d, each from the first row of its group on; behind them columns
-/// of the identity, up to a whole group.
+/// Columns of scalars in groups of d, each from the first row of its group on. Columns of the
+/// identity follow them, up to a whole group.
 void LoadScalars(const BorderedBandMatrix& A, double shift, int d, int stride, double* band) {
   const int size = A.block_size(), n = A.blocks();
   for (int j = 0; j < n; ++j) {
@@ -103,7 +103,7 @@ struct Panels {
     of = rest;
   }
 
-  /// Takes panel D^-1 panel^T from what is right of the panel.
+  /// Subtracts panel D^-1 panel^T from what is right of the panel.
   template <int b>
   static void UpdateTrailing(double* band, int j, const double* inverse) {
     if constexpr (b <= half) {
@@ -117,8 +117,8 @@ struct Panels {
     }
   }
 
-  /// False where a pivot is not positive. The updates go by L D L^T, so that each pivot waits for
-  /// one division after the one before, and not for its square root.
+  /// False where a pivot is not positive. The updates use L D L^T, so each pivot waits for one
+  /// division after the last pivot, not for its square root.
   static bool Factor(int n, double* band) {
     using Whole = Run<RoundUp(kRows)>;
     for (int j = 0; j < n; ++j) {
@@ -161,8 +161,7 @@ struct Panels {
     }
   }
 
-  /// The sums begin with what has been known for longest: the next block waits for the last terms
-  /// alone.
+  /// The sums begin with the terms known for longest: the next block waits only for the last terms.
   static void SolveUpper(int n, const double* band, double* __restrict x) {
     for (int j = n - 1; j >= 0; --j) {
       double* at = x + j * d;
@@ -259,9 +258,8 @@ class WideBand {
   int half_;
 };
 
-/// Calls `visit` with kernels: for blocks of three, or for those of any other size as a band of
-/// scalars in groups of four, whose half bandwidth is rounded up to one that is compiled while
-/// there is one.
+/// Calls `visit` with kernels. Blocks of three have their own. Any other size becomes a band of
+/// scalars in groups of four. Its half bandwidth is rounded up to a compiled one, if there is one.
 template <class Visit>
 auto Dispatch(int d, int half, Visit&& visit) {
   if (d == 3) {

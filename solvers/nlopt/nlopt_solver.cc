@@ -4,10 +4,10 @@
 // every evaluation that improves on the best point counts as an iteration. An evaluation that fails
 // is +infinity to NLopt, so that its line search backs off; many in a row end the solve.
 //
-// Statuses. A positive code is convergence if the rows are met, else the problem is infeasible as
-// far as the method can tell. A negative one (roundoff, a failed subproblem, a loop that does not
-// move) is convergence only if the best point is stationary: without rows by the decrease |g|^2/2
-// that the metric still promises there, with rows by the last improvement.
+// Statuses. A positive code is convergence if the rows are met. Otherwise the problem is infeasible
+// as far as the method can tell. A negative code (roundoff, a failed subproblem, a loop that does
+// not move) is convergence only if the best point is stationary. Without rows the test is the
+// decrease |g|^2/2 that the metric still promises there, with rows the last improvement.
 
 #include "solvers/nlopt/nlopt_solver.h"
 
@@ -26,17 +26,17 @@ namespace touchdown::solvers {
 namespace {
 
 constexpr int kMostFailures = 20;  // evaluations that may fail one after the other
-/// So many calls in a row for one and the same point: CCSAQ's inner loop never ends where rounding
-/// keeps its approximation below the objective.
+/// Largest number of calls in a row for the same point: CCSAQ's inner loop never ends where
+/// rounding keeps its approximation below the objective.
 constexpr int kMostRepeats = 50;
 constexpr double kCloser = 0.9;  // share of the violation that a repeated run must get below
-/// A method that gives up is believed to have converged if less than this share of the cost, or of
-/// what was gained, is still to be gained.
+/// A method that gives up counts as converged if the remaining gain is less than this share of the
+/// cost, or of the gain so far.
 constexpr double kStationary = 1e-9;
 
-/// CCSAQ solves a dual problem of one variable a row, to rounding and without asking the caller: where
-/// rows pinch each other that never ends. Three times as many find 1 optimum in 30 more, in six
-/// times the time.
+/// CCSAQ solves a dual problem of one variable a row, to rounding and without asking the caller.
+/// Where rows pinch each other, this never ends. Three times this limit finds 1 optimum in 30 more,
+/// in six times the time.
 constexpr int kMostDualEvaluations = 1000;
 
 struct Method {
@@ -44,8 +44,8 @@ struct Method {
   nlopt_algorithm algorithm;
   Capabilities capabilities;
   bool stores_vectors;
-  /// CCSAQ starts with steps of half the distance between the bounds: a whole flight, for the
-  /// interval.
+  /// CCSAQ starts with steps of half the distance between the bounds. For the interval that is a
+  /// whole flight.
   bool interval_as_angle;
   double function_tolerance;
 };
@@ -125,9 +125,9 @@ class NloptSolver : public SolverBackend {
     result->status = Status(code);
   }
 
-  /// NLopt, and again from where it ended at the end of a leg; or while it says that it has
-  /// converged, the rows are not met, and they get closer: SLSQP of version 2.7 looks at its
-  /// tolerances whether feasible or not.
+  /// Calls NLopt, and again from its last point at the end of a leg. It also calls it again while
+  /// NLopt says converged, the rows are not met and the violation decreases. SLSQP of version 2.7
+  /// looks at its tolerances whether feasible or not.
   nlopt_result Run(const View& view) {
     nlopt_result code = NLOPT_FORCED_STOP;
     double value = 0.0;
@@ -218,7 +218,7 @@ class NloptSolver : public SolverBackend {
       nlopt_force_stop(opt_);
       return false;
     }
-    // A library may lose itself: the terms have nothing to do with that.
+    // A library may ask for a point that is not finite: that is no failure of the terms.
     lost_ = lost_ || !std::all_of(z, z + point_.size(), [](double x) { return std::isfinite(x); });
     if (lost_) {
       nlopt_force_stop(opt_);
@@ -311,7 +311,7 @@ class NloptSolver : public SolverBackend {
   std::vector<double> lower_, upper_;  // infinite where NLopt keeps to none
   std::vector<Side> equalities_, inequalities_;
   int failures_ = 0;
-  bool lost_ = false;  // a point that was asked for is not finite
+  bool lost_ = false;  // a requested point is not finite
   int repeats_ = 0;
   double first_cost_ = 0.0;
   double improvement_ = HUGE_VAL;  // of the cost, by the last better point

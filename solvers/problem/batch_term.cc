@@ -15,14 +15,15 @@ namespace touchdown::solvers {
 
 namespace {
 
-// A first difference is of fourth order, over these steps with these weights: one of second order is good to 1e-10,
-// and a check of curvatures by differences of such slopes sees nothing but their noise.
+// Steps and weights of a first difference of fourth order. One of second order is only good to
+// 1e-10: a check of curvatures by differences of such slopes would see only noise.
 constexpr std::array<double, 4> kSteps = {-2.0, -1.0, 1.0, 2.0};
 constexpr std::array<double, 4> kWeights = {1.0 / 12.0, -8.0 / 12.0, 8.0 / 12.0, -1.0 / 12.0};
 
 constexpr double kSlopeError = 1e-11;  // of u whose fifth derivative is some hundred times u over scale^5
 
-// Where truncation and rounding are of one size: of the above, of a first difference of slopes, of a second difference.
+// Steps where truncation and rounding are of one size: of the above, of a first difference of
+// slopes, of a second difference.
 const double kFineStep = std::pow(std::numeric_limits<double>::epsilon(), 0.2);
 const double kFirstStep = std::cbrt(std::numeric_limits<double>::epsilon());
 const double kSecondStep = std::pow(std::numeric_limits<double>::epsilon(), 0.25);
@@ -189,7 +190,7 @@ class BatchTerm::Differences {
     }
   }
 
-  /// Slopes that a copy which cannot be evaluated has spoilt: from above, else from below.
+  /// Slopes that lack a copy which cannot be evaluated: from above, else from below.
   void AskTheOtherSide(TermBlock* block) {
     constexpr int kCopies = static_cast<int>(kSideWeights.size());
     for (const double side : {1.0, -1.0}) {

@@ -75,7 +75,7 @@ void FunctionTerm::RefuseOutput() const {
 
 void FunctionTerm::EvaluateFunction(int window, const double* q, bool derivatives, double* u,
                                     double* du) const {
-  // An output that the function forgets must not count as 0; one that it invents is written behind the others.
+  // An output that the function does not set must not count as 0; an extra one is written behind the others.
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   const int m = shape_.outputs;
   if (!derivatives) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One pass over all terms: values, the gradient, and the block-banded Hessian
 //   sum_k rho''(u) du du^T + rho'(u) d2u   (costs),   sum_k lambda d2u + w du du^T   (constraints).
-// At a fixed interval the share of quadratic terms in it is constant: it is computed once a solve
-// and copied.
+// At a fixed interval the share of quadratic terms is constant. It is computed once per solve and
+// copied.
 
 #include "touchdown/solvers/problem/problem.h"
 

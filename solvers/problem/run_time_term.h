@@ -23,8 +23,9 @@ double SlopeOf(int row, const TermRequest& request, const TermBlock& block);
 void AddGradient(int window, const TermShape& shape, const TermInput& input,
                  const TermRequest& request, const TermBlock& block, const TermSums& sums);
 
-/// Adds sum_c weight_c du_c du_c^T of a window, and its `curvature` sum_c SlopeOf(c) d2u_c, unless null: row-major
-/// (v + 1) x (v + 1) with h last, of which the upper part is read, blocks on the diagonal whole.
+/// Adds sum_c weight_c du_c du_c^T of a window and, unless null, its `curvature` sum_c SlopeOf(c)
+/// d2u_c. That is row-major (v + 1) x (v + 1) with h last. Its upper part is read, blocks on the
+/// diagonal whole.
 void AddHessian(int window, const TermShape& shape, const TermInput& input,
                 const TermRequest& request, const TermBlock& block, const double* curvature,
                 const TermSums& sums);

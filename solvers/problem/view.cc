@@ -2,8 +2,8 @@
 // A problem through x = E y + l(h). With g, H the full gradient and Hessian and ' = d/dh:
 //   g_y = E^T g,             g_h = dJ/dh + l' . g
 //   H_yy = E^T H E,          H_yh = E^T (H l' + H_xh)
-//   H_hh = d2J/dh2 + 2 l' . H_xh + l'^T H l' + l'' . g,
-// in the last line with g of the Lagrangian, as H is. Rows go through the same lift.
+//   H_hh = d2J/dh2 + 2 l' . H_xh + l'^T H l' + l'' . g.
+// The g in the last line is that of the Lagrangian, as H is. Rows go through the same lift.
 
 #include "touchdown/solvers/problem/view.h"
 

@@ -18,7 +18,7 @@ void ForEachNumber(const View& view, Visit&& visit) {
   for (const int block : view.lift().block) visit(block);
   for (const double coefficient : view.lift().coefficient) visit(coefficient);
   for (int i = 0; view.bounded() && i < view.num_variables(); ++i) {
-    // Their values may be others in each solve.
+    // Their values may differ in each solve.
     visit(std::isfinite(view.lower(i)));
     visit(std::isfinite(view.upper(i)));
     visit(view.lower(i) == view.upper(i));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One template makes a problem of a vehicle's equations of motion. J. Betts, "Practical Methods for
-// Optimal Control and Estimation Using Nonlinear Programming", 2nd ed., SIAM 2010, chapter 4, has
-// the transcription.
+// One template makes a problem of a vehicle's equations of motion. The transcription is from J.
+// Betts, "Practical Methods for Optimal Control and Estimation Using Nonlinear Programming", 2nd
+// ed., SIAM 2010, chapter 4.
 
 #include "touchdown/solvers/problems/shooting.h"
 

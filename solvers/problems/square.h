@@ -3,7 +3,7 @@
 
 namespace touchdown::solvers {
 
-/// Of a number or of one with its derivatives.
+/// The square of a number or of one with its derivatives.
 template <class T>
 T Square(const T& x) {
   return x * x;

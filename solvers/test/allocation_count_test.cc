@@ -14,7 +14,7 @@ namespace {
 #ifndef TOUCHDOWN_SANITIZED
 void* volatile sink;
 
-// What is not looked at need not be allocated.
+// The compiler may remove an allocation that is not observed.
 void* Seen(void* block) {
   sink = block;
   return block;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Equality rows in `banded`: right ones are met from everywhere, redundant ones are rows, and
-// multiple shooting is at home.
+// Equality rows in `banded`: consistent ones are met from everywhere, redundant ones are allowed,
+// and multiple shooting is solved.
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What `banded` promises beyond the conformance suite: Newton's one step on a quadratic problem,
-// the optimality conditions of the interior point with its multipliers, the elastic answer where
-// rows cannot be met, and no allocation in a solve.
+// What `banded` guarantees beyond the conformance suite. Newton solves a quadratic problem in one
+// step. The interior point's multipliers meet the optimality conditions. Rows that cannot be met
+// have an elastic answer. A solve does not allocate.
 
 #include "solvers/banded/banded_solver.h"
 
@@ -44,7 +44,7 @@ class Chain {
   std::vector<double> targets_;
 };
 
-/// |q|^2 <= r^2 for every block: the norm rows of a landing in small.
+/// |q|^2 <= r^2 for every block: a small model of a landing's norm rows.
 class Ball {
  public:
   static constexpr int kBlockSize = 3, kWindow = 1, kOutputs = 1;

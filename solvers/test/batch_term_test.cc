@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A map that is asked for all windows at once against the same as a WindowTerm.
+// A map evaluated for all windows at once, against the same as a WindowTerm.
 
 #include "touchdown/solvers/problem/batch_term.h"
 

@@ -92,7 +92,7 @@ TEST(BorderedCholesky, MatchesTheDenseFactor) {
   }
 }
 
-// The last blocks have room for neighbours that are none.
+// The last blocks have room for neighbours that do not exist.
 TEST(BorderedCholesky, WhatLiesBeyondTheEndIsNotRead) {
   std::mt19937_64 random(4);
   for (const Shape shape : {Shape{9, 3, 3, false}, Shape{9, 3, 5, true}, Shape{8, 2, 4, true},
@@ -130,7 +130,7 @@ TEST(BorderedCholesky, SaysWhatIsIndefinite) {
   EXPECT_EQ(factor.Factor(A), BorderedCholesky::Status::kIndefinite);
 }
 
-// What was left half done, or full of NaN, is not seen in the next factor.
+// An unfinished factor, or NaN in it, does not affect the next factor.
 TEST(BorderedCholesky, StartsAnewAfterAFailure) {
   std::mt19937_64 random(5);
   const BorderedBandMatrix good = RandomDefinite({6, 3, 3, true}, &random);

@@ -77,7 +77,7 @@ TEST_P(EveryRowBackend, MultipliersSatisfyStationarity) {
   const double expected[] = {2.5, 0.5, 0.0, 0.0, 0.0, 0.0, 4.5};
   for (int i = 0; i < 7; ++i) EXPECT_NEAR(result.multipliers[1][i], expected[i], 1e-4);
 
-  // Point and multipliers together are a start that is hard to improve.
+  // Point and multipliers together are a start that can hardly be improved.
   auto backend = Make();
   backend->Prepare(view);
   SolverResult again;

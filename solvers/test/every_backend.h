@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the conformance suites share: a test that runs on a named backend, and the names it runs on.
+// Shared by the conformance suites: a test that runs on a named backend, and the names it runs on.
 #pragma once
 
 #include <gtest/gtest.h>

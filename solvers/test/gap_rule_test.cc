@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One stop rule for all backends: each ends as near to the optimum as was asked for, and not much nearer.
+// One stop rule for all backends: each ends as near to the optimum as requested, and not much nearer.
 
 #include "touchdown/solvers/backend/gap_rule.h"
 
@@ -188,7 +188,7 @@ TEST(GapRule, BoundsWhereBandedEnds) {
   }
 }
 
-// A row that pushes at a point need not at the optimum: to hold it would hide what is gained by leaving it.
+// A row may push at a point but not at the optimum: holding it would hide the gain of leaving it.
 TEST(GapRule, ARowThatIsLeftIsNotHeld) {
   for (const double b : {0.9, 0.99}) {
     Problem problem = Scalars(2);
@@ -240,7 +240,7 @@ TEST(GapRule, ALookDoesNotAllocate) {
   }
 }
 
-// What a look finds too much has to be gone, half of it, before the next.
+// Half of the excess that a check finds must be gone before the next check.
 TEST(GapRule, LooksOnlyWhereTheCostHasFallen) {
   const Problem problem = Chain(2, Role::kCost);
   const View view(problem);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Our L-BFGS on standard functions, with its stop test, its budget, its cancel callback, functions
-// that cannot be evaluated everywhere; and its line search against the two conditions it promises.
+// Our L-BFGS on standard functions: its stop test, its budget, its cancel callback, and functions
+// that cannot be evaluated everywhere. Its line search is tested against its two conditions.
 
 #include "solvers/lbfgs/lbfgs.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The check of optimality, and what becomes of claims that it does not confirm.
+// The check of optimality, and the status of claims that it does not confirm.
 
 #include "touchdown/solvers/backend/optimality.h"
 
@@ -43,7 +43,7 @@ TEST(Optimality, DoesNotChangeWithTheCostsUnitOrAConstant) {
        {std::pair(1.0, 0.0), {1e-12, 0.0}, {1e9, 0.0}, {1.0, 1e6}}) {
     const ReferenceProblem p = ScaledRosenbrock(factor, constant);
     EXPECT_TRUE(LookAt(p, {1.0, 1.0}).stationary()) << factor;
-    // Of a large unit little of the cost may be left, too: its optimum is 0.
+    // With a large unit, too, little of the cost may be left: its optimum is 0.
     const double off = factor > 1.0 ? 1e-9 : 1e-7;
     EXPECT_TRUE(LookAt(p, {1.0 + off, 1.0 + 2.0 * off}).stationary()) << factor;
     EXPECT_FALSE(LookAt(p, {0.99, 0.98}).stationary()) << factor;
@@ -368,7 +368,7 @@ TEST(Optimality, MoreKnownOptimaPass) {
 }
 
 TEST(Optimality, KnownOptimaOfTheSetPass) {
-  // The optimum by the most exact backend there is; what it finds has the published cost.
+  // The optimum by the most exact backend available; it has the published cost.
   const BackendRegistry backends = StandardBackends();
   const auto ipopt = MakeBackend(backends, "ipopt");
   if (!ipopt->capabilities().compiled) GTEST_SKIP() << "without Ipopt there is nobody to ask";
@@ -412,7 +412,7 @@ TEST_P(ClaimsOfEveryBackend, NobodyClaimsWhatIsNone) {
   if (top.status == SolveStatus::kConverged) {
     EXPECT_LT(top.cost, -1.0 + 1e-6);
   }
-  // Three times the same equality, one of them moved: nothing meets all.
+  // Three times the same equality, one of them moved: no point meets all.
   for (const double other : {1.0, 2.0}) {
     const ReferenceProblem thrice = SmallProblem("thrice", {0.3, 0.0}, 0.5, EqualityForm::kRows)
                                         .Squares(2,
@@ -492,7 +492,7 @@ TEST_P(ClaimsOfEveryBackend, AStartThatIsFeasibleInTheRowsUnitIsNotTheBestPoint)
 }
 
 TEST_P(ClaimsOfEveryBackend, ClaimsInTheSetAreRight) {
-  // Those whose numbers end with 2 or 7 are kept aside, for the table of the whole set.
+  // Those whose numbers end with 2 or 7 are left for the table of the whole set.
   int claimed = 0;
   for (const EqualityForm form : {EqualityForm::kRows, EqualityForm::kPairs}) {
     for (ReferenceProblem p : HockSchittkowski(form)) {

@@ -52,7 +52,7 @@ TEST(Problem, AWindowThatStraysOutOfTheProblemIsAnEvaluationThatFails) {
   first = 8;
   Evaluation e;
   problem.Resize(&e);
-  // Room for the stray window's read; what it would write has none.
+  // Room for the stray window's read, but not for its write.
   const std::vector<double> x(24, 0.5);
   EXPECT_FALSE(problem.Evaluate(x.data(), 1.0, {.gradient = true}, {}, &e));
 }

@@ -68,7 +68,7 @@ TEST(View, TheLagrangiansHessianMatchesDifferences) {
   }
 }
 
-/// What a map by hand can get wrong.
+/// Possible errors of a map with derivatives by hand.
 enum class Fault { kNone, kNan, kSlope, kCurvature, kLowerHalf };
 
 /// u = scale (q_0 q_1 + q_0^2), d = 2, with derivatives by hand.

@@ -32,22 +32,22 @@ struct CollisionSegment {
 /// cell. A stretch that is still blocked at the end of the scan is left out, as published.
 std::vector<CollisionSegment> FindCollisionSegments(const ControlPoints& q, const EgoGrid& grid);
 
-/// The stretches of *new* obstacles, asked during the optimisation: a control point is in one if its
-/// cell is occupied and it is beyond all of its own pairs by a cell. False if a stretch has no free
-/// control point after it (the published planner's "terminal point in obstacle").
+/// The stretches of *new* obstacles, for use during the optimisation. A control point is in one if
+/// its cell is occupied and it is beyond all of its own pairs by a cell. False if a stretch has no
+/// free control point after it (the published planner's "terminal point in obstacle").
 bool FindNewObstacles(const ControlPoints& q, const EgoGrid& grid, const SurfacePairs& pairs,
                       std::vector<CollisionSegment>* segments);
 
-/// Adds to the control points inside of `segment` the pairs that lead to `path`, a free way around
-/// the obstacle from its entry to its exit. False if a control point shall copy its neighbour's pair
-/// and there is none.
+/// Adds pairs to the control points inside of `segment`. The pairs lead to `path`, a free way
+/// around the obstacle from its entry to its exit. False if a control point must copy its
+/// neighbour's pair and there is none.
 bool BindSurfacePairs(const ControlPoints& q, const CollisionSegment& segment,
                       const std::vector<Eigen::Vector3d>& path, const EgoGrid& grid,
                       SurfacePairs* pairs);
 
-/// Whether the curve's first two thirds are blocked, sampled as published: in steps that would be a
-/// cell if the curve were straight and its speed even. `t` receives the first hit, from the start
-/// of the curve [s].
+/// Whether the curve's first two thirds are blocked. It is sampled as published, in steps that
+/// would be a cell if the curve were straight and its speed constant. `t` receives the first hit,
+/// from the start of the curve [s].
 bool FirstTwoThirdsBlocked(const UniformBspline& curve, const EgoGrid& grid, double* t);
 
 }  // namespace touchdown::planning

@@ -40,8 +40,8 @@ class FreeSpaceGrid : public EgoGrid {
 /// 2 ceil(inflation / resolution) + 1 cells a side.
 class CubeGrid : public EgoGrid {
  public:
-  /// A box with its lowest corner at `corner` [m] and `size` [m]; throws std::invalid_argument unless
-  /// resolution > 0, inflation >= 0 and the box has 1 to 1e8 cells. Allocates.
+  /// A box with its lowest corner at `corner` [m] and `size` [m]. Throws std::invalid_argument
+  /// unless resolution > 0, inflation >= 0 and the box has 1 to 1e8 cells. Allocates.
   CubeGrid(const Eigen::Vector3d& corner, const Eigen::Vector3d& size, double resolution,
            double inflation);
 

@@ -32,11 +32,11 @@ struct EgoPlanResult {
   int refine_iterations = 0;
 };
 
-/// One plan call of the EGO-Planner baseline, from a first guess to a trajectory (Zhou et al. 2021):
-/// fit, rebound optimisation, check of the limits, and where they are exceeded a slower, refined
-/// curve. Feasible per axis and clear in its first two thirds as far as the published checks see;
-/// nothing is certified. Deterministic for a seed and an order of calls. One instance serves one
-/// thread.
+/// One plan call of the EGO-Planner baseline, from a first guess to a trajectory (Zhou et al.
+/// 2021). It fits, optimises with rebounds and checks the limits. Where they are exceeded, it makes
+/// a slower, refined curve. Feasible per axis and clear in its first two thirds as far as the
+/// published checks see; nothing is certified. Deterministic for a seed and an order of calls. One
+/// instance serves one thread.
 class EgoPlan {
  public:
   /// Throws std::invalid_argument if an option is out of range. Allocates the search's lattice.

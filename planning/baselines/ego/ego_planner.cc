@@ -169,7 +169,8 @@ const ReplanResult& EgoPlanner::Replan(const ReplanInput& input, const Occupancy
   return Step(input, map);
 }
 
-/// Numbers that nothing can be done with: what is committed goes on, the goal is asked for again.
+/// Input numbers that cannot be used: the committed trajectory goes on, and the goal is asked for
+/// again.
 const ReplanResult& EgoPlanner::Refuse(const ReplanInput& input) {
   Begin(input);
   result_.idle = false;
@@ -285,7 +286,7 @@ void EgoPlanner::CheckSafety(const ReplanInput& input, const EgoGrid& grid) {
 
 bool EgoPlanner::PlanFromVehicle(const ReplanInput& input, const EgoGrid& grid) {
   if (input.t_now < next_call_t_ - kClockSlack) return false;
-  // The vehicle's state, carried on to when the plan takes over.
+  // The vehicle's state, predicted to when the plan takes over.
   const double latency = input.t_start - input.t_now;
   const SplineState start{input.vehicle.p_WB + latency * input.vehicle.v_WB, input.vehicle.v_WB,
                           Eigen::Vector3d::Zero()};

@@ -29,12 +29,13 @@ struct EgoPlannerOptions {
   double ceiling_height = 10.0;  ///< highest one [m]
 };
 
-/// The EGO-Planner baseline in the closed loop: its state machine with goals that follow the pad. Call Replan at kRate.
-/// The goal is the pad's position when it is sent, at the endpoint's height. Nothing is certified. Differences from the
-/// published system:
-/// - A plan asked for at t_now starts on the committed trajectory at t_start and takes over there, as this project's
-///   own planner does. The state machine waits for it.
-/// - A call whose search ran into its limit is repeated no sooner than the published limit of 0.2 s allows.
+/// The EGO-Planner baseline in the closed loop: its state machine with goals that follow the pad. Call Replan at
+/// kRate. The goal is the pad's position when it is sent, at the endpoint's height. Nothing is certified. Differences
+/// from the published system:
+/// - A plan asked for at t_now starts on the committed trajectory at t_start and takes over there, as
+///   this project's own planner does. The state machine waits for it.
+/// - A call whose search ran into its limit is repeated after the published limit of 0.2 s at the
+///   earliest.
 /// - The map is this project's.
 class EgoPlanner : public Planner {
  public:

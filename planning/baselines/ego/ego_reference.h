@@ -14,8 +14,8 @@ struct LocalTarget {
   Eigen::Vector3d v = Eigen::Vector3d::Zero();  ///< in W [m/s]
 };
 
-/// The global reference of the EGO-Planner baseline: a chain of quintics on the straight line from
-/// the vehicle to the goal that knows nothing of obstacles, and the progress along it.
+/// The global reference of the EGO-Planner baseline, and the progress along it. It is a chain of
+/// quintics on the straight line from the vehicle to the goal, which ignores obstacles.
 class EgoReference {
  public:
   /// From the vehicle's position and velocity to the goal, which is reached with velocity v_goal (zero,
@@ -23,8 +23,8 @@ class EgoReference {
   void Set(const Eigen::Vector3d& p, const Eigen::Vector3d& v, const Eigen::Vector3d& goal,
            const Eigen::Vector3d& v_goal, const EgoOptions& options);
 
-  /// The first point of the reference that is a horizon away from `p`; the goal where none is. Where
-  /// already the first point looked at is farther away the old target is given again, as published.
+  /// The first point of the reference that is a horizon away from `p`; the goal where none is. If
+  /// the first point looked at is already farther away, returns the old target, as published.
   LocalTarget Target(const Eigen::Vector3d& p, const EgoOptions& options);
 
   const Eigen::Vector3d& goal() const { return goal_.p; }

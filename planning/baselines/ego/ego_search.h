@@ -19,10 +19,10 @@ enum class EgoSearchStatus {
   kExpansionLimit,  ///< the budget of expansions was used up
 };
 
-/// A* as the baseline uses it: on a lattice of its own, centred between the two ends and not aligned
-/// with the map's cells, over 26 neighbours, f = g + 1.0001 h with h the exact distance on the empty
-/// lattice. An end inside an obstacle is moved away from the other end until it is free. The lattice
-/// (search_cells cubed) is allocated by the constructor and kept.
+/// A* as the baseline uses it, over 26 neighbours on a lattice of its own. The lattice is centred
+/// between the two ends and not aligned with the map's cells. f = g + 1.0001 h, with h the exact
+/// distance on the empty lattice. An end inside an obstacle is moved away from the other end until
+/// it is free. The constructor allocates the lattice (search_cells cubed), which is kept.
 class EgoSearch {
  public:
   explicit EgoSearch(const EgoOptions& options);

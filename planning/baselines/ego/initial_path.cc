@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // First guesses of the EGO-Planner baseline, after the measured facts of the published system. The duration of the
 // polynomial ignores the velocities of both ends, and its last sample is short of the end. A warm start's points are
-// equally spaced in distance, though they are taken as equally spaced in time.
+// equally spaced in distance, but are used as equally spaced in time.
 
 #include "planning/baselines/ego/initial_path.h"
 

@@ -30,9 +30,9 @@ struct EgoEnds {
 /// Nominal knot interval [s]: 1.2 d_cp / max_speed.
 double NominalInterval(const EgoOptions& options);
 
-/// Samples of one quintic from start to end, or with `random` of two through a random midpoint that
-/// lies the wider the more `failures` came before. The samples end up to one interval short of the
-/// end, as published. Empty if no interval suits. Allocates.
+/// Samples of one quintic from start to end, or with `random` of two through a random midpoint. The
+/// midpoint's range grows with the `failures` before. The samples end up to one interval short of
+/// the end, as published. Empty if no interval suits. Allocates.
 std::optional<SampledPath> PolynomialPath(const EgoEnds& ends, const EgoOptions& options,
                                           EgoRandom* random, int failures);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Quintic Hermite polynomials, and chains of them. A chain of least jerk leaves velocity and
-// acceleration at each inner point free; that its third and fourth derivative are continuous there
-// (the natural conditions of the variation) makes two linear equations per point.
+// acceleration at each inner point free. Its third and fourth derivative are continuous there (the
+// natural conditions of the variation), which gives two linear equations per point.
 
 #include "planning/baselines/ego/quintic.h"
 

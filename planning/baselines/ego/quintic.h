@@ -27,8 +27,8 @@ struct Quintic {
 struct QuinticChain {
   std::vector<Quintic> pieces;
 
-  /// The chain of least integrated squared jerk through `points` (at least two), piece k in
-  /// durations[k] seconds, from start to end: derivatives up to the fourth are continuous.
+  /// The chain of least integrated squared jerk through `points` (at least two), from start to end.
+  /// Piece k lasts durations[k] seconds. Derivatives up to the fourth are continuous.
   static QuinticChain Through(const std::vector<Eigen::Vector3d>& points,
                               const std::vector<double>& durations, const SplineState& start,
                               const SplineState& end);

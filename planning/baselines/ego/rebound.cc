@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Zhou et al. 2021, algorithm 2, with the limits and the order of events of the published system: a
-// break takes effect before the next evaluation, so that the next run starts at the last trial point.
+// Zhou et al. 2021, algorithm 2, with the limits and the order of events of the published system. A
+// break takes effect before the next evaluation, so the next run starts at the last trial point.
 
 #include "planning/baselines/ego/rebound.h"
 
@@ -117,8 +117,8 @@ bool Rebound::Search(const CollisionSegment& segment, std::vector<Eigen::Vector3
   return false;
 }
 
-/// Pairs for every stretch of the polygon. One failed search leaves all without, as published.
-/// False if a pair is looked up where there is none.
+/// Pairs for every stretch of the polygon. If one search fails, no stretch gets pairs, as
+/// published. False if a pair is looked up where there is none.
 bool Rebound::BindPolygon() {
   segments_ = FindCollisionSegments(q_, *grid_);
   std::vector<std::vector<Eigen::Vector3d>> paths(segments_.size());
@@ -131,7 +131,7 @@ bool Rebound::BindPolygon() {
   return true;
 }
 
-/// Pairs for obstacles that no pair speaks of yet. A stretch whose search fails is left out.
+/// Pairs for obstacles that no pair covers yet. A stretch whose search fails is left out.
 Rebound::Break Rebound::LookForObstacles() {
   if (!FindNewObstacles(q_, *grid_, pairs_, &segments_)) return Break::kTerminal;
   std::vector<Eigen::Vector3d> path;

@@ -32,8 +32,8 @@ class Rebound : private solvers::LbfgsFunction {
  public:
   explicit Rebound(const EgoOptions& options);
 
-  /// Optimises *q (at least 7 control points) at a fixed interval. *q is what came out, whatever the
-  /// status; kPlanned: its first two thirds are free where they were looked at.
+  /// Optimises *q (at least 7 control points) at a fixed interval. *q is the result, whatever the
+  /// status. kPlanned: its first two thirds are free where they were sampled.
   EgoStatus Run(const EgoGrid& grid, double interval, ControlPoints* q);
 
   const ReboundCounts& counts() const { return counts_; }

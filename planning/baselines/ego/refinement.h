@@ -12,8 +12,8 @@
 
 namespace touchdown::planning {
 
-/// Largest ratio by which a component of a control point of the velocity exceeds the limit, or the
-/// root of the acceleration's (Zhou et al., eq. 13); feasible up to limit_tolerance beyond.
+/// Largest ratio by which a component of a velocity control point exceeds the limit, or the root of
+/// the acceleration's (Zhou et al., eq. 13). Feasible up to limit_tolerance beyond.
 struct LimitExcess {
   bool feasible = true;
   double ratio = 1.0;  ///< as found, feasible or not

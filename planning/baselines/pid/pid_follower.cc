@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The horizontal law acts on where the vehicle is, so that it takes up what the tracking law leaves; the
-// height on the reference, because the mission's own height already waits for the vehicle. A period's
-// reference has constant acceleration, which a single cubic segment holds exactly.
+// The horizontal law acts on the vehicle's position, so that it corrects what the tracking law
+// leaves. The height law acts on the reference, because the mission's own height already waits for
+// the vehicle. A period's reference has constant acceleration, which a single cubic segment
+// represents exactly.
 
 #include "planning/baselines/pid/pid_follower.h"
 

@@ -8,10 +8,10 @@
 
 namespace touchdown::planning {
 
-/// The track-then-descend baseline: a PID law leads the vehicle above the pad, the height follows what the
-/// mission asks for. It plans nothing and knows no obstacle, floor or ceiling. Call Replan at kRate; what
-/// is asked at t_now takes over at t_start, and a step that is asked sooner is idle. A result's curve is
-/// the reference of one period: a parabola, past whose end it goes on at its velocity.
+/// The track-then-descend baseline: a PID law leads the vehicle above the pad, and the height follows the mission's.
+/// It plans nothing and knows no obstacle, floor or ceiling. Call Replan at kRate. An answer for t_now takes over at
+/// t_start, and a step that is asked sooner is idle. A result's curve is the reference of one period: a parabola,
+/// past whose end it goes on at its velocity.
 class PidFollower : public Planner {
  public:
   static constexpr double kRate = 50.0;      ///< of the law [Hz]

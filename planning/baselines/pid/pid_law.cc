@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A proportional-integral-derivative law from the position relative to the pad to a velocity, as the outer
-// loop of common autopilots is, with the pad's velocity fed forward. The velocity is taken up as by a
-// first-order lag, so that the reference has an acceleration to be tracked with.
+// A proportional-integral-derivative law from the position relative to the pad to a velocity, like
+// the outer loop of common autopilots. The pad's velocity is fed forward. The reference follows the
+// velocity with a first-order lag, so that it has an acceleration to be tracked with.
 
 #include "planning/baselines/pid/pid_law.h"
 

@@ -13,7 +13,7 @@ struct PidGains {
   double proportional = 2.0;  ///< horizontal, of the position error [1/s]
   double integral = 0.2;      ///< of its integral [1/s^2]
   double derivative = 0.1;    ///< of its rate [-]
-  /// The integral adds no more: what an error of 0.25 m asks for [m/s].
+  /// The integral adds no more: the velocity of an error of 0.25 m [m/s].
   double integral_limit = 0.5;
   /// Farther from the pad the integral stands still [m]: the distance at which the mission descends.
   double integral_zone = 0.5;
@@ -24,17 +24,17 @@ struct PidGains {
 /// Throws std::invalid_argument naming the first gain out of its range.
 void Validate(const PidGains& gains);
 
-/// What the law is told of the pad, horizontally, all in W.
+/// The law's input on the pad, horizontally, all in W.
 struct PidError {
   Eigen::Vector2d position = Eigen::Vector2d::Zero();      ///< pad less vehicle [m]
   Eigen::Vector2d velocity = Eigen::Vector2d::Zero();      ///< pad less vehicle [m/s]
   Eigen::Vector2d pad_velocity = Eigen::Vector2d::Zero();  ///< fed forward [m/s]
 };
 
-/// The law: v = v_pad + P e + I integral(e) + D de/dt, cut at the speed limit and taken up with the time
-/// constant `response` under the acceleration limit. Anti-windup: the integral is bounded, and
-/// stands still while either limit cuts or the pad is farther than its zone: else it would be full on
-/// arrival.
+/// The law: v = v_pad + P e + I integral(e) + D de/dt. It is cut at the speed limit and followed
+/// with the time constant `response` under the acceleration limit. Anti-windup: the integral is
+/// bounded. It stands still while either limit cuts or the pad is farther than its zone: it would
+/// be full on arrival.
 class PidLaw {
  public:
   /// Throws std::invalid_argument as Validate does.
@@ -42,9 +42,9 @@ class PidLaw {
 
   void Reset() { integral_.setZero(); }
 
-  /// Acceleration of the reference [m/s^2] over the next dt [s] from its velocity `v` [m/s]; the height
-  /// asks for the vertical velocity `v_z` [m/s]. A reference within the limits stays there if dt is no
-  /// longer than `response`.
+  /// Acceleration of the reference [m/s^2] over the next dt [s] from its velocity `v` [m/s]. `v_z`
+  /// is the vertical velocity that the height law demands [m/s]. A reference within the limits
+  /// stays there if dt is no longer than `response`.
   Eigen::Vector3d Step(const PidError& error, double v_z, const Eigen::Vector3d& v,
                        const Limits& limits, double dt);
 

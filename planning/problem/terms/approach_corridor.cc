@@ -2,8 +2,8 @@
 // A cone that stands on the predicted, moving pad: in the last seconds before arrival the vehicle
 // comes from above. At knot k, with the pad's state at that knot's own time,
 //   u = sqrt(dx^2 + dy^2 + eps^2) - r0 - tan(angle) (height over the pad).
-// Convex at fixed h. A start outside the cone would leave hard rows without an interior: what it is
-// outside by is allowed to it, falling to zero on half of the way. Source: docs/formulation.md.
+// Convex at fixed h. A start outside the cone would leave hard rows without an interior. So its
+// excess is allowed, falling to zero on half of the way. Source: docs/formulation.md.
 
 #include <algorithm>
 #include <array>
@@ -96,7 +96,7 @@ struct OutsideCorridor {
     Eigen::Vector2d n;
   };
 
-  // By the knot and not by its time: a free interval must not move a knot across the relief's end.
+  // By the knot, not by its time: a free interval must not move a knot across the relief's end.
   double Relief(int k) const {
     return excess * std::max(0.0, 1.0 - first_block(k) / relieved_knots);
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Price of time, w T with T = M h: what free arrival trades against smoothness and limits. The inner
-// map is sqrt(T) under a square loss, so that least-squares backends take it too. Not convex with
-// the rest, as h is free.
+// Price of time, w T with T = M h, which free arrival weighs against smoothness and limits. The
+// inner map is sqrt(T) under a square loss, so that least-squares backends accept it too. Not
+// convex with the rest, as h is free.
 
 #include <cmath>
 

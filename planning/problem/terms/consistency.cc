@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Stays near the previous plan: w int |p(t) - p_previous(t)|^2 dt at the same absolute times, by one
-// point per knot. The previous plan goes on at its last velocity. Without one there is nothing to
-// stay near to. Convex at fixed h. Source: docs/formulation.md.
+// Stays near the previous plan: w int |p(t) - p_previous(t)|^2 dt at the same absolute times, by
+// one point per knot. The previous plan goes on at its last velocity. Without a previous plan the
+// term is off. Convex at fixed h. Source: docs/formulation.md.
 
 #include "touchdown/planning/problem/term_kinematics.h"
 

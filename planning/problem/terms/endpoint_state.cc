@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The boundary of the explicit endpoint formulation as rows u = 0: p, v, a at knot 0 are the start's;
-// p, v, and a where it is fixed, at knot M are those wanted at arrival, which move with it (eq.
-// 17-18). Affine in the blocks. With a fixed end acceleration second derivatives with respect to a
-// free h lack the pad's snap, which is not predicted.
+// The boundary of the explicit endpoint formulation as rows u = 0. At knot 0, p, v, a are the
+// start's. At knot M, p, v, and a where it is fixed, are those wanted at arrival, and move with it
+// (eq. 17-18). Affine in the blocks. With a fixed end acceleration second derivatives with respect
+// to a free h lack the pad's snap, which is not predicted.
 
 #include "touchdown/planning/problem/term_kinematics.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A sphere to stay out of, seen at every inner knot: with its centre c and radius r
-//   u = (r^2 - |p - c|^2) / (2 r),
-// smooth everywhere, zero on the surface and there about the depth. Not convex. Between the knots nothing is
-// checked. Source: docs/formulation.md.
+// A sphere to stay out of, evaluated at every inner knot. With its centre c and radius r
+//   u = (r^2 - |p - c|^2) / (2 r).
+// It is smooth everywhere, zero on the surface, and near it about the depth. Not convex. Not
+// checked between the knots. Source: docs/formulation.md.
 
 #include "touchdown/planning/problem/term_kinematics.h"
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Ellipsoids that move at constant velocity, seen at every inner knot at its own time. With the
-// semi-axes s and the least of them s_min
-//   u = s_min (1 - sum_c ((p_c - o_c(t)) / s_c)^2) / 2,
-// smooth everywhere, zero on the surface and there about the depth. Not convex. Between the knots
-// nothing is checked: the vehicle's and the obstacle's way in one interval belongs into the semi-axes.
-// Source: docs/formulation.md.
+// Ellipsoids that move at constant velocity, evaluated at every inner knot at its own time. With
+// the semi-axes s and the least of them s_min
+//   u = s_min (1 - sum_c ((p_c - o_c(t)) / s_c)^2) / 2.
+// It is smooth everywhere, zero on the surface, and near it about the depth. Not convex. Not
+// checked between the knots: the semi-axes must include the vehicle's and the obstacle's way in one
+// interval. Source: docs/formulation.md.
 
 #include "touchdown/planning/problem/term_kinematics.h"
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The inner map of speed_limit and acceleration_limit: the norm of a derivative control point d of
-// order n = 1 or 2 (eq. 15 of the paper) as
-//   u = (|d|^2 - L^2) / (2 d_max),  d = (sum_i r_i Q_i) / h^n,
-// smooth, zero on the limit, and there with the slope of |d| itself. L is d_max, but for hard rows
-// of a start beyond the limit, which follow the recovery profile of the certificate.
+// The inner map of speed_limit and acceleration_limit. With d a derivative control point of order
+// n = 1 or 2 (eq. 15 of the paper)
+//   u = (|d|^2 - L^2) / (2 d_max),  d = (sum_i r_i Q_i) / h^n.
+// It is smooth, zero on the limit, and has the slope of |d| there. L is d_max, except for hard rows
+// of a start beyond the limit: they follow the recovery profile of the certificate.
 #pragma once
 
 #include <stdexcept>
@@ -28,7 +28,7 @@ class DerivativeNorm {
   }
 
   int windows() const { return windows_; }
-  // What the start state fixes is no row: V_0 (no Bezier point either), V_1 and A_0.
+  // No rows for what the start state fixes: V_0 (no Bezier point either), V_1 and A_0.
   int first_block(int k) const { return k + kFirst; }
 
   void Update(const LandingContext& context) {
@@ -128,8 +128,8 @@ class DerivativeNorm {
     return kOrder == 1 ? inverse_h2 : inverse_h2 * inverse_h2;
   }
 
-  /// What is left of a start beyond the limit. A speed takes one interval, and at least the
-  /// certificate's lag, to begin to fall; an acceleration falls at once.
+  /// The remaining excess of a start beyond the limit. A speed begins to fall after one interval,
+  /// and after the certificate's lag at the earliest. An acceleration falls at once.
   template <class T>
   T Recovering(const T& h, const T& t) const {
     T since = t - t0_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The ESDF-free collision term: every {p, v} pair is a half-space of one control point,
-// d = (Q_i - p) . v >= s_f, so that neither value nor gradient asks the map. Convex. X. Zhou et al.,
+// The ESDF-free collision term. Every {p, v} pair is a half-space of one control point, d = (Q_i -
+// p) . v >= s_f. So neither value nor gradient needs the map. Convex. X. Zhou et al.,
 // "EGO-Planner", RA-L 2020, eq. 4-5.
 
 #include "touchdown/planning/problem/landing_term.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Inner maps u = f(A_i) of one acceleration control point, i = 1..N-3 (the start fixes A_0): a map
-// writes f with its gradient g and Hessian H, and the chain rule through A = (r . Q)/h^2 is here:
+// Inner maps u = f(A_i) of one acceleration control point, i = 1..N-3 (the start fixes A_0). A map
+// gives f with its gradient g and Hessian H. The chain rule through A = (r . Q)/h^2 is here:
 //   u_q = r g / h^2,  u_h = -2/h A.g,  u_qq = r r^T H / h^4,  u_qh = -2/h^3 r (g + H A),
 //   u_hh = (6 A.g + 4 A^T H A) / h^2.
 #pragma once
@@ -13,7 +13,7 @@ namespace touchdown::planning {
 
 /// A map derives from this as `struct Map : OfAcceleration<Map>` and has
 ///   double At(const Eigen::Vector3d& a, Eigen::Vector3d* g, Eigen::Matrix3d* H) const;
-/// convexity in A is convexity in the control points at fixed h.
+/// If it is convex in A it is convex in the control points at fixed h.
 template <class Map>
 struct OfAcceleration {
   static constexpr int kBlockSize = 3, kWindow = 3, kOutputs = 1;

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Keeps the pad in the cone of the downward camera, which looks against the thrust axis that the
-// flat outputs ask for. At knot k, with d from the vehicle to the predicted pad and f = a + g e_z - pull,
-//   u = sqrt(|d|^2 + eps^2) cos(half angle) + d . f / sqrt(|f|^2 + eps^2),
-// zero on the cone and of the size of the distance. Not convex. D. Mellinger and V. Kumar, ICRA 2011
-// for the axis; docs/formulation.md.
+// Keeps the pad in the cone of the downward camera. The camera looks against the thrust axis that
+// the flat outputs demand. At knot k, with d from the vehicle to the predicted pad and
+// f = a + g e_z - pull,
+//   u = sqrt(|d|^2 + eps^2) cos(half angle) + d . f / sqrt(|f|^2 + eps^2).
+// It is zero on the cone and of the size of the distance. Not convex. D. Mellinger and V. Kumar,
+// ICRA 2011 for the axis; docs/formulation.md.
 
 #include "touchdown/estimation/base/vehicle_model.h"
 #include "touchdown/planning/problem/term_kinematics.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The inner map of the smoothness term. On a segment the acceleration is linear and the jerk j
 // constant, so that int |a|^2 dt = h |mean a|^2 + h^3 |j|^2 / 12 and
-//   u = (s_a(h) A, s_j(h) J),  s_a = h^-1.5 / 2,  s_j = sqrt(g) h^-2.5,  g = w_j + h^2 / 12,
-// with A = Q_k - Q_{k+1} - Q_{k+2} + Q_{k+3} and J = -Q_k + 3 Q_{k+1} - 3 Q_{k+2} + Q_{k+3}.
+//   u = (s_a(h) A, s_j(h) J),  s_a = h^-1.5 / 2,  s_j = sqrt(g) h^-2.5,  g = w_j + h^2 / 12.
+// A = Q_k - Q_{k+1} - Q_{k+2} + Q_{k+3} and J = -Q_k + 3 Q_{k+1} - 3 Q_{k+2} + Q_{k+3}.
 #pragma once
 
 #include <cmath>
@@ -103,7 +103,7 @@ class SegmentDerivatives {
     return {h, a, j, a * la, j * lj, a * (la * la + l2a), j * (lj * lj + l2j)};
   }
 
-  /// Two roots and two divisions a window are saved where h is the expected one.
+  /// Saves two roots and two divisions per window where h is the expected one.
   Scales At(double h) const { return h == at_.h ? at_ : ScalesAt(h); }
 
   int segments_;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Limit on the norm of the velocity through its control points V_i = (Q_{i+1} - Q_i)/h, i = 2..N-3:
-// with the start's velocity they hold every Bezier point of the curve's velocity in their hull.
-// Convex at fixed h (a convex map under a nondecreasing convex loss).
+// Limit on the norm of the velocity through its control points V_i = (Q_{i+1} - Q_i)/h, i = 2..N-3.
+// With the start's velocity, their hull contains every Bezier point of the curve's velocity. Convex
+// at fixed h (a convex map under a nondecreasing convex loss).
 
 #include "planning/problem/terms/norm_limit.h"
 

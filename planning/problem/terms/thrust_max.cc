@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Greatest thrust by differential flatness: the thrust over the mass is |a + g e_z - d| under a steady
-// pull d, of the wind say.
-// The acceleration is linear between its control points A_i and the norm convex: kept at the A_i it
-// is kept on the whole curve. Convex at fixed h. D. Mellinger and V. Kumar, ICRA 2011.
+// Greatest thrust by differential flatness: the thrust over the mass is |a + g e_z - d| under a
+// steady pull d, such as wind. The acceleration is linear between its control points A_i and the
+// norm is convex. So a limit kept at the A_i is kept on the whole curve. Convex at fixed h. D.
+// Mellinger and V. Kumar, ICRA 2011.
 
 #include "planning/problem/terms/of_acceleration.h"
 #include "touchdown/estimation/base/vehicle_model.h"

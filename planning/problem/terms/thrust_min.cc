@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Least thrust by differential flatness, |a + g e_z - d| >= f_min at the acceleration control
-// points A_i, under a steady pull d: with no thrust the attitude has no direction. Not convex, and between the knots the thrust
-// may be smaller. D. Mellinger and V. Kumar, ICRA 2011.
+// points A_i, under a steady pull d. Without thrust the attitude has no direction. Not convex, and
+// between the knots the thrust may be smaller. D. Mellinger and V. Kumar, ICRA 2011.
 
 #include <algorithm>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Limit on the tilt of the thrust axis f = a + g e_z - d, d a steady pull, in cone form: its horizontal part, smoothed, at most
-// tan(tilt) times its vertical part, at the acceleration control points A_i. The cone is convex and
-// the acceleration linear between the A_i: kept there it is kept on the whole curve. Convex at fixed
-// h. D. Mellinger and V. Kumar, ICRA 2011.
+// Limit on the tilt of the thrust axis f = a + g e_z - d, with d a steady pull, in cone form. At
+// the acceleration control points A_i its horizontal part, smoothed, is at most tan(tilt) times its
+// vertical part. The cone is convex and the acceleration linear between the A_i. So a limit kept
+// there is kept on the whole curve. Convex at fixed h. D. Mellinger and V. Kumar, ICRA 2011.
 
 #include <cmath>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // docs/examples/in_tree_term: compiled with one more line in terms.def and nothing else, it is part
-// of StandardTerms(), has the right derivatives, and is solved by every backend, soft and hard, or
-// refused with a sentence that names it.
+// of StandardTerms() and has the right derivatives. Every backend solves it, soft and hard, or
+// refuses it with a sentence that names it.
 
 #include <fstream>
 #include <string>

@@ -10,7 +10,7 @@
 
 namespace touchdown::solvers {
 
-/// One backend that can be asked for by name.
+/// One backend, found by its name.
 struct BackendEntry {
   std::string name;
   std::string description;  ///< one line: method and natural use
@@ -23,7 +23,7 @@ using BackendRegistry = std::vector<BackendEntry>;
 /// Every backend of the library, those not compiled in included.
 BackendRegistry StandardBackends();
 
-/// The same backends; `listener` hears of every solve that instances made by the new registry are asked for.
+/// The same backends; `listener` is called before every solve of instances made by the new registry.
 BackendRegistry Overheard(const BackendRegistry& registry, const SolveListener& listener);
 
 /// A new instance of the named backend. Throws std::invalid_argument naming the known ones.

@@ -11,10 +11,9 @@
 
 namespace touchdown::solvers {
 
-/// One solve of a problem in its own variables (blocks x d, then the interval if it is free) with
-/// one of the standard backends. Allocates: a caller that solves many of one structure prepares a backend of
-/// their own (solver_backend.h). Throws std::invalid_argument where the backend is unknown, refuses
-/// the problem, or the start has another size.
+/// One solve of a problem in its own variables (blocks x d, then the interval if it is free) with one of the standard
+/// backends. Allocates: a caller that solves many of one structure prepares its own backend (solver_backend.h).
+/// Throws std::invalid_argument if the backend is unknown or refuses the problem, or if the start has another size.
 SolverResult Solve(const Problem& problem, const Eigen::VectorXd& start,
                    const std::string& backend = "banded", const Stop& stop = {});
 

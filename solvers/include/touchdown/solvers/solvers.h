@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What one needs for a problem of one's own (docs/library.md).
+// All headers for a problem of one's own (docs/library.md).
 #pragma once
 
 #include "touchdown/solvers/backend_registry.h"

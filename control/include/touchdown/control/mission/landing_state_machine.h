@@ -12,22 +12,22 @@
 //   tracking       hold            plan_failed        no plan for over plan_timeout
 //   tracking       hold            own_state_lost     own state not usable for over own_timeout
 //   (lands)        disarmed        contact            feet at the deck with a force for contact_time,
-//                                                     but for breaks of contact_break, and at last
-//                                                     for contact_rest without
+//                                                     breaks up to contact_break allowed, and at last
+//                                                     for contact_rest without a break
 //   landing        go_around       pad_lost           no converged pad for over pad_timeout
 //   landing        go_around       tags_lost          gate closed for over gate_timeout (descent
 //                                                     planned: at all), or committed and the bridge
 //                                                     is over
 //   landing        go_around       error_too_large    horizontal error beyond abort_distance (descent
 //                                                     planned: outside the cone)
-//   landing        go_around       too_fast           committed, but the pad moves otherwise
+//   landing        go_around       too_fast           committed, too fast relative to the pad
 //   landing        go_around       gust               committed (descent planned: at all), and
 //                                                     leans farther than lean_max
 //   landing        go_around       plan_failed        no plan for over plan_timeout (descent
 //                                                     planned: arrival_plan_timeout)
 //   landing        go_around       no_contact         committed for over commit_timeout, or the
 //                                                     plan's contact overdue by arrival_timeout, or
-//                                                     put off for so long
+//                                                     postponed for so long
 //   landing        go_around       own_state_lost     own state not usable for over own_timeout
 //   go_around      tracking        climb_complete     at the follow height, pad converged
 //   go_around      tracking        climb_timeout      climbing took too long, pad converged
@@ -39,25 +39,29 @@
 //   emergency_stop hold            emergency_cleared  flag down for over emergency_time
 // clang-format on
 //
-// Contact counts in every mode in which what is flown leads to it: a go-around for which nothing is certified ends on
-// the deck. A foot may be so low over a known deck that a climb would come too late. Such a landing has go-arounds for
-// pad_lost, no_contact and own_state_lost only: it touches anyway, and would bounce off.
+// Contact counts in every mode in which the flown trajectory leads to it: a go-around without a
+// certified trajectory ends on the deck. A foot may be so low over a known deck that a climb would
+// come too late. Such a landing goes around for pad_lost, no_contact and own_state_lost only: it
+// touches anyway, and would bounce off.
 //
-// (lands): landing, or any mode while `lands`. (flying): tracking, landing, go_around. (armed): every mode but disarmed,
-// which is final: there is no way out of it, and only contact leads into it.
+// (lands): landing, or any mode while `lands`. (flying): tracking, landing, go_around. (armed):
+// every mode except disarmed. Disarmed is final, and only contact leads to it.
 //
-// A committed landing ends only by contact, an error beyond commit_abort_distance (or outside the cone), too_fast, gust,
-// the end of the bridge before the feet touch, no_contact, own_state_lost, invalid_input or emergency. A pad counts as
-// converged only while the vehicle's own state is usable. Dead reckoning closes the gate for own_patience: a short
-// outage of position and velocity is waited out.
+// A committed landing ends only by contact, an error beyond commit_abort_distance (or outside the
+// cone), too_fast, gust, the end of the bridge before the feet touch, no_contact, own_state_lost,
+// invalid_input or emergency. A pad counts as converged only while the vehicle's own state is
+// usable. Dead reckoning closes the gate for own_patience, so that the vehicle waits during a short
+// outage of position and velocity.
 //
-// The gate asks: will the feet meet the deck? It is open while the tags are seen and the pad is known well. Without tags
-// it stays open if the rest of the way can be bridged: contact is predicted within bridge_time of the last sighting, and
-// the pad is then still known to bridge_sigma. Without sightings neither improves. So a descent that pauses, or that
-// lost the tags too high up, closes the gate. A committed descent is aborted if the bridge ends without contact.
+// The gate predicts whether the feet will meet the deck. It is open while the tags are seen and the
+// pad is known well. Without tags it stays open if the rest of the way can be bridged. Then contact
+// must be predicted within bridge_time of the last sighting, and the pad must still be known to
+// bridge_sigma at contact. Without sightings neither improves. So a descent that pauses, or that
+// lost the tags too high up, closes the gate. A committed descent is aborted if the bridge ends
+// without contact.
 //
-// A vehicle that tilts farther than lean_max in a gust waits for a lull as behind a closed gate. It gives up a landing
-// before it touches: the hull would touch before the feet do, or the vehicle would be blown off.
+// A vehicle that tilts farther than lean_max in a gust waits as it does at a closed gate. It gives
+// up a landing before it touches: its hull would touch before its feet, or it would be blown off.
 //
 // With descent planned, tracking already flies a plan that ends in contact. The same gate decides decide_time before
 // contact. If it is open, the landing begins. Else the vehicle arrives above the pad instead, and makes a new plan to
@@ -268,8 +272,8 @@ struct MissionOutputs {
   bool motors_armed = true;
   bool plan_requested = false;  ///< planning to the pad makes sense now
   bool committed = false;
-  /// Feet above the deck [m], continuous in time but for the beginning of a planned landing, and its rate
-  /// [m/s]: the offset and the approach velocity of the plan's endpoint.
+  /// Feet above the deck [m] and its rate [m/s]: the offset and the approach velocity of the plan's
+  /// endpoint. Continuous in time, except at the beginning of a planned landing.
   double foot_height = 0.0;
   double foot_height_rate = 0.0;
 };
@@ -280,9 +284,9 @@ struct MissionStep {
 };
 
 /// Time until the feet are on the deck, at the latest, if nothing pauses the descent [s]. Vertical:
-/// from the higher of the command and the vehicle's height, for heights up to gate_height; planned:
-/// what the plan says. Of the inputs, descent, height and arrival_in are used; infinite where these
-/// are not finite.
+/// from the higher of the command and the vehicle's height, for heights up to gate_height. Planned:
+/// the plan's time of contact. Uses descent, height and arrival_in of the inputs; infinite where
+/// these are not finite.
 double ContactIn(const MissionState& state, const MissionInputs& inputs,
                  const MissionParameters& parameters) noexcept;
 

@@ -16,22 +16,23 @@ double HullAtEveryTilt(const estimation::VehicleModel& model);
 /// Plans stay above this away from the pad [m].
 double LowestPlan(const estimation::VehicleModel& model);
 
-/// How far plans stay from obstacles at least: what proven pairs keep in calm air, the hull at every tilt and its
-/// margins [m].
+/// Least clearance of plans from obstacles [m]: the clearance of proven pairs in calm air, the hull
+/// at every tilt and its margins.
 double LeastClearance(const estimation::VehicleModel& model);
 
-/// Tells the planner of the vehicle, of its envelope and of how often it is asked. A plan is flown until the next one
-/// takes over: a `period` after it is asked for, or later by `late` [s].
+/// Sets the planner's options from the vehicle, its envelope and the planning period. A plan is
+/// flown until the next one takes over: a `period` after it is asked for, or later by `late` [s].
 void SetVehicle(const estimation::VehicleModel& model, const Envelope& envelope, double deck_size,
                 double period, double late, planning::ReplannerOptions* options);
 
-/// Plans come down from above and end as early as is good, with the vehicle over the deck as the pad's motion asks:
-/// what `descent: planned` adds. Weights that are set already stay.
+/// What `descent: planned` adds. Plans descend from above and end as early as is useful, over the
+/// deck with the pad's velocity. Weights that are set already stay.
 void SetLanding(planning::ReplannerOptions* options);
 
-/// An Onboard's options and parts for a vehicle that lands on a pad of this height by a Replanner, with the own state
-/// given: what the program uses by default, without its latency. Change options before LandingParts, which takes from
-/// them, the envelope too, what planner and law need to know. @throws std::invalid_argument as Replanner does.
+/// Options and parts of an Onboard for a vehicle that lands on a pad of this height by a Replanner,
+/// with the own state given. They are the program's defaults, without its latency. Change options
+/// before LandingParts, which reads from them, and from the envelope, the planner's and the law's
+/// options. @throws std::invalid_argument as Replanner does.
 OnboardOptions LandingOptions(const estimation::VehicleModel& model, double deck_height,
                               const Envelope& envelope = {});
 OnboardParts LandingParts(const OnboardOptions& options);

@@ -57,13 +57,13 @@ struct OnboardTimes {
   double control = 0.0, planning = 0.0;
 };
 
-/// A vehicle's own software: own state, pad filter, map, mission, planner, tracking law. It knows no clock but the
+/// A vehicle's own software: own state, pad filter, map, mission, planner, tracking law. It uses no clock except the
 /// time stamps, no file, no thread and no simulator. One instance per vehicle; the thread may change between calls.
 ///
-/// Take() whatever has come, in any order; Step() at the rate of the tracking law, 500 Hz by default of the
-/// laws' gains. The first state is to be a hover: Begin() takes it over. The same calls give the same bits (but with
-/// PlanLatency::measured). Once it flies nothing allocates: the first steps make the room that is kept. One that was
-/// moved from may be given another or destroyed, no more.
+/// Take() whatever has come, in any order; Step() at the rate of the tracking law, 500 Hz by default of the laws'
+/// gains. The first state must be a hover: Begin() takes it over. The same calls give the same bits (except with
+/// PlanLatency::measured). In flight nothing allocates: the first steps make the room that is kept. A moved-from
+/// instance may only be assigned or destroyed.
 class Onboard {
  public:
   /// @throws std::invalid_argument naming the first option out of its range, or the part that is missing.
@@ -72,8 +72,9 @@ class Onboard {
   Onboard(Onboard&&) noexcept;
   Onboard& operator=(Onboard&&) noexcept;
 
-  /// The own state, given; where it is estimated, its measurements. Before the flight the time is not known: a state
-  /// that is older than the history counts for a new beginning, and those before it are forgotten.
+  /// The own state, if it is given, or the measurements that it is estimated from. Before the
+  /// flight the time is not known. A state that is older than the history then counts as a new
+  /// beginning, and the states before it are forgotten.
   Taken Take(const estimation::VehicleState& state);
   Taken Take(const estimation::ImuSample& sample);
   Taken Take(const estimation::OwnPositionFix& fix);
@@ -84,17 +85,17 @@ class Onboard {
   Taken Take(const estimation::PadGpsFix& fix);
   Taken Take(const estimation::PadSighting& sighting);
   Taken Take(const estimation::PadImage& image);
-  /// Obstacles. Returns from the pad are told apart.
+  /// Obstacles. Returns from the pad are distinguished.
   Taken Take(const estimation::DepthImage& image);
   Taken Take(const estimation::FootForce& force);
 
   /// How many measurements became what, by Taken.
   const std::array<int, kTakenKinds>& taken() const;
 
-  /// The vehicle hovers at the time t [s], in [0, 1e10], with these rotor thrusts [N]: the flight begins, once. States
-  /// from later than t, by more than a moment, are forgotten.
-  /// @throws std::invalid_argument if its state at t is not known then or not below the ceiling, if the flight has
-  /// begun, or for a time or a thrust out of its range.
+  /// The flight begins, once: the vehicle hovers at the time t [s], in [0, 1e10], with these rotor
+  /// thrusts [N]. States that are later than t, by more than a moment, are forgotten.
+  /// @throws std::invalid_argument if its state at t is unknown or not below the ceiling, if the
+  /// flight has begun, or if a time or thrust is out of range.
   void Begin(double t, const estimation::Commands& thrusts);
 
   /// The set-point for the time t [s], which is later than all before; if it is not, or is not finite, the last one
@@ -109,7 +110,7 @@ class Onboard {
   /// Estimated, and compensated where the law does so.
   Disturbance disturbance() const;
 
-  /// What it takes for its own state now, and how that was at t [s].
+  /// What it uses as its own state now, and how that was at t [s].
   const estimation::VehicleState& own() const;
   estimation::VehicleState OwnAt(double t) const;
   bool own_estimated() const;
@@ -123,7 +124,8 @@ class Onboard {
   void LogPadTo(std::vector<estimation::PadArrival>* log);
   /// The map itself, for those who know more than the sensors.
   planning::OccupancyMap* mutable_map();
-  /// Hands over all that was ever observed, and begins anew with nothing remembered outside of the window. Allocates.
+  /// Hands over everything observed so far, and starts again with nothing remembered outside of the
+  /// window. Allocates.
   planning::PersistentMap TakeMemory();
 
  private:

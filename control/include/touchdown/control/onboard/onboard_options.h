@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What an Onboard is told before it flies.
+// The options of an Onboard, set before it flies.
 #pragma once
 
 #include <memory>
@@ -27,10 +27,11 @@ struct Envelope {
 
   /// Speed, and acceleration as the tilt allows it.
   planning::Limits limits() const;
-  /// Of stops: gusts and steady wind are not to be paid for by the way to rest [rad].
+  /// Of stops: beyond that of plans, so that gusts and steady wind do not lengthen the way to rest
+  /// [rad].
   double StopTilt() const;
-  /// 1 sigma of the pad's velocity before it is measured [m/s]: a pad may be nearly as fast as the vehicle, and a
-  /// narrow prior would gate its first fixes for ever.
+  /// 1 sigma of the pad's velocity before it is measured [m/s]. A pad may be nearly as fast as the
+  /// vehicle, and with a narrow prior the gate would reject its fixes for ever.
   double PadSpeedPrior() const;
   /// Of the tracking law [rad].
   double TrackingTilt() const;
@@ -73,7 +74,7 @@ struct OnboardOptions {
   estimation::PadFilterOptions pad;
   planning::OccupancyMapOptions map;
   double start_free =
-      0.8;  ///< the space around the start is taken for free, so far, and 0.45 m from the hull [m]
+      0.8;  ///< radius around the start that counts as free, at least 0.45 m from the hull [m]
 };
 
 /// What an Onboard is made of, besides.

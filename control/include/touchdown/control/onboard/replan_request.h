@@ -17,7 +17,7 @@ struct ReplanRequest {
       pad;  ///< from which the predictor predicts it; none: the pad is not known
 };
 
-/// A replanning step, as it was asked for.
+/// The inputs of a replanning step.
 struct OnboardReplan {
   ReplanRequest request;
   estimation::PadState pad;  ///< the prediction at t_now

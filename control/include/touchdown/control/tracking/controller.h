@@ -19,7 +19,8 @@ struct Wrench {
   Eigen::Vector3d moment_B = Eigen::Vector3d::Zero();  ///< [N m]
 };
 
-/// What acts on the vehicle beside gravity, the rotors and the drag in still air that its model has.
+/// The forces on the vehicle beside gravity, the rotors and the drag in still air that its model
+/// has.
 struct Disturbance {
   Eigen::Vector3d force_W = Eigen::Vector3d::Zero();   ///< [N]
   Eigen::Vector3d moment_B = Eigen::Vector3d::Zero();  ///< [N m]
@@ -53,7 +54,8 @@ struct ControllerOptions {
       0.15;  ///< of the hover thrust: the desired force's least vertical [-]
 };
 
-/// The default options, with lower frequencies for a vehicle that cannot be turned as fast (docs/vehicles.md). Throws std::invalid_argument as estimation::AllocationOf does.
+/// The default options, with lower frequencies for a vehicle that turns more slowly (docs/vehicles.md). Throws
+/// std::invalid_argument as estimation::AllocationOf does.
 ControllerOptions OptionsFor(const estimation::VehicleModel& model);
 
 /// Throws std::invalid_argument naming the first option out of its range.
@@ -68,7 +70,7 @@ class Controller {
   virtual ~Controller() = default;
 
   /// Does not allocate. Inputs that are not finite give an output that is not finite.
-  /// @param disturbance to compensate; the law "paper", as published, does not look at it.
+  /// @param disturbance to compensate; the law "paper", as published, ignores it.
   /// @param tilt_most of the desired thrust, besides the options' tilt_max, > 0 [rad].
   virtual ControlOutput Update(
       const estimation::VehicleState& state, const planning::FlatState& reference,

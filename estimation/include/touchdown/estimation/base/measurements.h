@@ -32,8 +32,8 @@ struct DepthFrame {
               ///< is none of both, or beyond the range, says nothing
 };
 
-/// Whether a camera can have taken it: positive focal length, an image plane that is no wider than 1e4 focal lengths,
-/// a pose that is one, within 1e7 m, and a range. Says nothing of the depths.
+/// Whether a camera can have taken it: positive focal length, an image plane no wider than 1e4
+/// focal lengths, a valid pose within 1e7 m, and a range. Does not check the depths.
 bool IsPossible(const DepthFrame& frame);
 
 /// One depth image from a camera that is fixed to the vehicle.
@@ -48,8 +48,8 @@ struct DepthImage {
 
 /// Whether such a camera can have taken it, as above, and its pixels are all there.
 bool IsPossible(const DepthImage& image);
-/// Whether its pixels say something, and no fewer than those that are returns from beyond the range, as an image in
-/// millimetres has.
+/// Whether its pixels carry information, and not fewer than are returns from beyond the range, as
+/// in an image in millimetres.
 bool SaysSomething(const DepthImage& image);
 
 /// Position of the pad by GPS (horizontal, in W). The paper's eq. 11 without its heading.

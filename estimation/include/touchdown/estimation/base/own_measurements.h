@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the vehicle's own sensors deliver, as plain data. Produced by sim/, consumed by
-// OwnStateFilter. All sensors sit in B's origin, the centre of mass: lever arms are taken as
-// corrected by the driver.
+// Measurements of the vehicle's own sensors, as plain data. Produced by sim/, consumed by
+// OwnStateFilter. All sensors sit in B's origin, the centre of mass: the driver corrects for lever
+// arms.
 #pragma once
 
 #include <Eigen/Core>

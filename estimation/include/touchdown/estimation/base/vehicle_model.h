@@ -13,13 +13,13 @@ inline constexpr double kGravity = 9.81;
 /// A vehicle has four actuators at least and so many at most.
 inline constexpr int kLeastActuators = 4, kMostActuators = 8;
 
-/// A command or an answer of each actuator, in the order of VehicleModel::actuators: newtons of thrust, or newton
-/// metres of what makes no thrust. Never on the heap.
+/// A command or an answer of each actuator, in the order of VehicleModel::actuators. In newtons of thrust, or in
+/// newton metres for actuators without thrust. Never on the heap.
 using Commands = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMostActuators, 1>;
 
-/// One actuator, fixed in the body: what it does per unit of its command. A rotor has a command in newtons, its
-/// thrust along +z_B at its hub, and the torque that it is answered with. The models in which the rotors are not told
-/// apart have one of thrust and three that make a moment alone, with commands in newton metres.
+/// One actuator, fixed in the body: its effect per unit of its command. A rotor has a command in newtons, thrust
+/// along +z_B at its hub, and a reaction torque. Models that do not distinguish their rotors have one actuator of
+/// thrust and three that make a moment alone, with commands in newton metres.
 struct Actuator {
   Eigen::Vector3d p_BR = Eigen::Vector3d::Zero();      ///< where it pushes, in B [m]
   double thrust = 1.0;                                 ///< along +z_B per unit: 1, or 0
@@ -28,8 +28,8 @@ struct Actuator {
   double max = 0.0;
 };
 
-/// A rotor with its hub at p_BR [m]; `torque_per_thrust` is the reaction torque about z_B per newton of thrust with its
-/// sign [m] (tau/k of eq. 1-2).
+/// A rotor with its hub at p_BR [m]. `torque_per_thrust` is the reaction torque about z_B per newton of thrust with
+/// its sign [m] (tau/k of eq. 1-2).
 inline Actuator RotorAt(const Eigen::Vector3d& p_BR, double torque_per_thrust, double thrust_max,
                         double thrust_min = 0.0) {
   return {p_BR, 1.0, {0.0, 0.0, torque_per_thrust}, thrust_min, thrust_max};
@@ -84,11 +84,11 @@ struct Allocation {
   auto Shares() const { return commands_of_wrench.col(0); }
 };
 
-/// Throws std::invalid_argument unless there are kLeastActuators to kMostActuators of them with finite figures
-/// and min < max, they make thrust and three moments apart, and hover without a moment asks none to push down.
+/// Throws std::invalid_argument unless there are kLeastActuators to kMostActuators of them with finite figures and
+/// min < max. They must span thrust and three moments, and none may push down in a hover without a moment.
 Allocation AllocationOf(const VehicleModel& model);
 
-/// How fast it can be made to turn about each of B's axes from hover, in the slower sense, the thrust kept
+/// Greatest angular acceleration about each of B's axes from hover, in the slower sense, at the same thrust
 /// [rad/s^2]. Throws as AllocationOf.
 Eigen::Vector3d HoverTurn(const VehicleModel& model);
 

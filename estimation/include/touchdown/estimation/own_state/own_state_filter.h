@@ -47,9 +47,9 @@ class OwnStateFilter {
   /// the last reading less the bias. Meaningful once started().
   VehicleState Estimate() const;
 
-  /// The same at another time t [s]. Later: carried on with the last readings, no more than max_delay ahead. Earlier: as
-  /// far as the history reaches back, with all that is known by now. Images need it: their time stamp is past when they
-  /// have been worked on. The result has the time it is for.
+  /// The same at another time t [s]. Later: predicted with the last readings, at most max_delay ahead. Earlier: as
+  /// far as the history reaches back, with all that is known by now. Images need it: their time stamp is past when
+  /// they are processed. The result has the time it is for.
   VehicleState Estimate(double t) const;
 
   /// The nominal state with its biases, and the covariance of its error. Meaningful once started().

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The models of OwnStateFilter: motion from IMU samples, and what the other sensors measure, each
-// with its Jacobian with respect to the error state.
+// The models of OwnStateFilter: motion from IMU samples, and the measurements of the other sensors.
+// Each has its Jacobian with respect to the error state.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,8 +14,8 @@ inline constexpr int kOwnErrors = 15;
 using OwnVector = Eigen::Matrix<double, kOwnErrors, 1>;
 using OwnMatrix = Eigen::Matrix<double, kOwnErrors, kOwnErrors>;
 
-/// Where the parts of the error state begin, each of three: what has to be added to the nominal
-/// state; the attitude error is a small rotation in B, q_true = q exp(error).
+/// Where the parts of the error state begin, each of three numbers. The error is what has to be
+/// added to the nominal state. The attitude error is a small rotation in B: q_true = q exp(error).
 enum OwnError : int {
   kPositionError = 0,       ///< in W [m]
   kVelocityError = 3,       ///< in W [m/s]

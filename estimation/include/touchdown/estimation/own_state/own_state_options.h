@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What OwnStateFilter is told and what it answers: options, outcomes, status, counts.
+// Inputs and outputs of OwnStateFilter: options, outcomes, status, counts.
 #pragma once
 
 #include <array>

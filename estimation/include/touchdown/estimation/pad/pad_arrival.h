@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a pad filter was given, so that a filter can be run on it again.
+// The inputs of a pad filter, so that a filter can be run on them again.
 #pragma once
 
 #include <variant>
@@ -9,7 +9,8 @@
 
 namespace touchdown::estimation {
 
-/// A sighting, with what the vehicle took for its state at the sighting's time stamp when it came.
+/// A sighting, with the vehicle's own state estimate at the sighting's time stamp, as it was when
+/// it came.
 struct BelievedSighting {
   PadSighting sighting;
   VehicleState believed;

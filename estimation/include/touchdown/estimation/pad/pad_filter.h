@@ -35,8 +35,8 @@ enum class PadUpdate {
 };
 std::string_view ToString(PadUpdate update);
 
-/// A GPS fix that claims a smaller standard deviation, down to none at all, is taken as this good:
-/// an exact receiver must not make the covariance singular. [m]
+/// A GPS fix with a smaller stated standard deviation, even zero, counts as this good: an exact
+/// receiver must not make the covariance singular. [m]
 inline constexpr double kLeastGpsSigma = 1e-3;
 
 struct PadFilterOptions {
@@ -49,14 +49,14 @@ struct PadFilterOptions {
   /// Heading is read off the motion at this ratio of speed to its 1 sigma, above min_speed.
   double heading_significance = 2.5;
   /// kPaper measures the heading between fixes that lie this many of their 1 sigma apart. The fixes
-  /// are used twice then, for the position too: rare measurements keep the covariance honest.
+  /// are then used twice, for the position too. Rare measurements keep the covariance consistent.
   double chord_significance = 5.0;
   double min_speed = 0.05;          ///< [m/s]
   double heading_lost_sigma = 0.7;  ///< back to kVelocity beyond this [rad]
 
   double gate_probability = 0.999;  ///< a good measurement passes with this probability
-  /// At the second measurement in a row that one sensor has gated the pad is taken to manoeuvre:
-  /// the belief is widened by these standard deviations and the measurement is tried again.
+  /// If a sensor's measurements are gated twice in a row, the pad is assumed to manoeuvre. The
+  /// belief is widened by these standard deviations, and the measurement is tried again.
   double maneuver_speed = 0.3;       ///< [m/s]
   double maneuver_heading = 0.2;     ///< [rad]
   double maneuver_turn_rate = 0.3;   ///< [rad/s]

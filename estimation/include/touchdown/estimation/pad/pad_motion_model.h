@@ -10,8 +10,8 @@ namespace touchdown::estimation {
 using PadVector = Eigen::Matrix<double, 5, 1>;
 using PadMatrix = Eigen::Matrix<double, 5, 5>;
 
-/// How the pad is taken to move. Every motion uses the same five-vector; entries that a motion does
-/// not have are exactly zero, with zero covariance.
+/// The assumed motion of the pad. Every motion uses the same five-vector. Entries that a motion
+/// does not have are exactly zero, with zero covariance.
 enum class PadMotion {
   kVelocity,  ///< [Px, Py, Vx, Vy, 0]: heading not known yet, straight at constant velocity
   kHeading,   ///< [Px, Py, V, phi, 0]: the paper's state (eq. 9), straight along its heading

@@ -27,8 +27,8 @@ class PadPrediction {
   /// Does not allocate.
   virtual PadState At(double t) const noexcept = 0;
 
-  /// The same but for cov_p, which is not to be looked at. A step asks this a thousand times, and of a belief the covariance
-  /// is what costs.
+  /// The same without a valid cov_p. A step calls this a thousand times, and the covariance is the expensive part of
+  /// a belief.
   virtual PadState MeanAt(double t) const noexcept { return At(t); }
 
   /// There is a deck, to be landed on and not to be flown into. A goal has none.

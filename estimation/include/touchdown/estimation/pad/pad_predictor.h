@@ -9,7 +9,7 @@
 
 namespace touchdown::estimation {
 
-/// What is known of the pad when a plan is asked for.
+/// What is known of the pad when a plan is requested.
 struct PadKnowledge {
   PadBelief belief;
   double height = 0.0;  ///< of the deck in W [m]
@@ -31,7 +31,8 @@ class PadPredictor {
 class BeliefPrediction final : public PadPrediction {
  public:
   /// `height`: deck's upper face in W [m]. The turn rate is shrunk towards zero by its signal to
-  /// noise ratio, omega^3 / (omega^2 + var(omega)): a turn is predicted only as far as it is known.
+  /// noise ratio, omega^3 / (omega^2 + var(omega)). So a turn is predicted only as far as it is
+  /// known.
   BeliefPrediction(const PadBelief& belief, double height, const PadNoise& noise);
 
   /// Any finite t [s], before or after the belief's. Does not allocate.
@@ -47,7 +48,7 @@ class BeliefPrediction final : public PadPrediction {
   PadNoise noise_;
 };
 
-/// As the filter's model goes on.
+/// Predicts by the filter's model.
 class BeliefPredictor : public PadPredictor {
  public:
   const PadPrediction& Predict(const PadKnowledge& known) override;
@@ -56,7 +57,7 @@ class BeliefPredictor : public PadPredictor {
   std::optional<BeliefPrediction> prediction_;
 };
 
-/// The paper extrapolates along the heading: a turn that the filter knows of is left out.
+/// The paper's extrapolation along the heading. A turn rate in the filter is ignored.
 class StraightPredictor final : public BeliefPredictor {
  public:
   const PadPrediction& Predict(const PadKnowledge& known) override;

@@ -16,18 +16,18 @@ struct PadAlignmentOptions {
   double blur = 1.2;         ///< side of the square that one pixel sees at least [pixel], in [1, 2]
   int max_pixels = 8000;     ///< a pad that covers more is left alone: its corners are sharp enough
   double correlation = 0.9;  ///< of image and model, demanded, in [0, 1]
-  double neighbors = 1.0;  ///< pixels that err alike: one of so many counts in the covariance, >= 1
+  double neighbors = 1.0;    ///< one of so many pixels with the same error counts, >= 1
 };
 
-/// Makes the pose of a pad that is small in the image sharper: instead of the corners of the tags
-/// that were found, every pixel of the printed sheet speaks, found tag or not.
+/// Makes the pose of a pad that is small in the image more exact. It uses every pixel of the
+/// printed sheet, in found tags or not, instead of the corners of the found tags.
 class PadAlignment {
  public:
   /// Throws std::invalid_argument for an option out of its range.
   explicit PadAlignment(const PadAlignmentOptions& options = {});
 
-  /// Replaces pose and covariance if the printed sheet is found in the image near where the pose
-  /// puts it; else leaves them as they are. `pose` must be kSolved. Allocates at the first images.
+  /// Replaces pose and covariance if the printed sheet is found in the image near the pose.
+  /// Otherwise leaves them as they are. `pose` must be kSolved. Allocates at the first images.
   /// @param normal what is known of the deck's normal, as in SolvePadPose.
   /// @returns whether the pose was replaced.
   bool Refine(const GrayImageView& image, const CameraIntrinsics& camera,

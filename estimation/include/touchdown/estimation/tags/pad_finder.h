@@ -11,7 +11,7 @@
 namespace touchdown::estimation {
 
 struct PadFinderOptions {
-  /// Where the image as it is does not do, look at it enlarged: finds tags down to 8 pixels a side.
+  /// If the image itself is not enough, search it enlarged: finds tags down to 8 pixels a side.
   bool enlarge = true;
   PadPoseOptions pose;
   bool align = true;  ///< the whole sheet with the image, once tags are found

@@ -24,9 +24,9 @@ enum class PadPoseStatus {
 /// One sentence for people.
 const char* Sentence(PadPoseStatus status);
 
-/// How the corners of an image err, and when they are not believed. The pose's covariance follows
-/// from the corners' noise; that is estimated from the residuals together with what is known of it
-/// beforehand: corner_sigma counts as much as corner_sigma_weight residuals do.
+/// The errors of an image's corners, and when corners are rejected. The pose's covariance follows
+/// from the corners' noise. The noise is estimated from the residuals and from prior knowledge:
+/// corner_sigma counts as much as corner_sigma_weight residuals do.
 struct PadPoseOptions {
   double corner_sigma = 0.1;          ///< each axis [pixel], > 0
   double corner_sigma_weight = 20.0;  ///< in residuals, > 0
@@ -50,13 +50,13 @@ struct PadPose {
   double corner_sigma = 0.0;  ///< estimated [pixel]
   int tags_used = 0;
   int dropped_id = -1;  ///< id of the tag whose corners did not fit; -1: none
-  /// Of a plane, two poses may look alike. Probability of the one not chosen, in [0, 0.5]; `cov` has
-  /// room for it.
+  /// Two poses of a plane may look alike. Probability of the one not chosen, in [0, 0.5]; `cov`
+  /// includes it.
   double other_probability = 0.0;
 };
 
-/// The pose that explains all corners of all tags best, in the sense of least squares of their
-/// distances in the image. Does not allocate. Never throws for what an image may hold.
+/// The pose that fits all corners of all tags best, by least squares of their distances in the
+/// image. Does not allocate. Never throws because of an image's content.
 /// @param tags with ids of PadTags(), each once.
 /// @param normal decides between the two poses, and makes that of a single tag sharper.
 /// Throws std::invalid_argument for options or a normal out of range, or for an id that the pad

@@ -35,8 +35,8 @@ struct PadCorners {
   explicit PadCorners(std::span<const TagDetection> tags, int left_out = -1);
 };
 
-/// Offset from where a corner is to where the pose puts it [pixel], with its derivative by a move of
-/// the pose; nothing for a corner that is not in front of the camera.
+/// Offset from a corner in the image to its projection by the pose [pixel], with its derivative by
+/// a move of the pose. Nothing for a corner that is not in front of the camera.
 struct CornerResidual {
   Eigen::Vector2d offset;
   Eigen::Matrix<double, 2, 6> jacobian;
@@ -63,12 +63,12 @@ NormalEquations Assemble(const PadCorners& corners, const CameraIntrinsics& came
                          const PoseCP& pose);
 NormalEquations Assemble(const PadNormal& normal, const PoseCP& pose);
 
-/// A pose from the homography that maps pad to image best, a first guess for least squares; nothing
+/// A pose from the homography that maps pad to image best: a first guess for least squares. Nothing
 /// if there is none.
 std::optional<PoseCP> PoseFromHomography(const PadCorners& corners, const CameraIntrinsics& camera);
 
-/// The other pose that a far plane may have for nearly the same image: mirrored at the plane through
-/// the corners' centre across the line of sight.
+/// The other pose that a far plane may have for nearly the same image. It is mirrored at the plane
+/// through the corners' centre across the line of sight.
 PoseCP MirroredPose(const PadCorners& corners, const PoseCP& pose);
 
 }  // namespace touchdown::estimation

@@ -8,8 +8,8 @@
 
 namespace touchdown::planning {
 
-/// By so much a limit may be exceeded [m/s, m/s^2, rad/s]. Limits are met with equality at times: up to the rounding of sums
-/// of control points, and where they were hard rows up to what backends count as feasible (Evaluator::kFeasible).
+/// A limit may be exceeded by this much [m/s, m/s^2, rad/s]. Some limits are met with equality: up to the rounding of
+/// sums of control points, and as hard rows up to what backends count as feasible (Evaluator::kFeasible).
 inline constexpr double kLimitSlack = 2e-6;
 
 /// What was proven about a trajectory. A new plan is committed only if passed().
@@ -20,10 +20,10 @@ struct Certificate {
   double start_velocity_residual = 0.0;     ///< |v(t_from) - start| [m/s]
   double endpoint_position_residual = 0.0;  ///< |p(T) - wanted| [m]
   double endpoint_velocity_residual = 0.0;  ///< |v(T) - wanted| [m/s]
-  /// What was committed before is flown on: its bounds and its clearance are not measured again, and are NaN here.
-  /// stops_in_observed_space says whether it was proven then and still holds.
+  /// The trajectory committed before is flown on. Its bounds and its clearance are not measured again, and are NaN
+  /// here. stops_in_observed_space says whether it was proven then and still holds.
   bool earlier = false;
-  /// Hull bounds over the curve [m/s], [m/s^2], and of who flies it exactly [rad/s].
+  /// Hull bounds over the curve [m/s], [m/s^2], and of a vehicle that flies it exactly [rad/s].
   double speed_bound = 0.0;
   double acceleration_bound = 0.0;
   double body_rate_bound = 0.0;
@@ -31,11 +31,11 @@ struct Certificate {
   bool recovering = false;   ///< the start was beyond a limit: certified against
                              ///< the recovery profile instead
   bool clear = false;        ///< every cell the curve passes is free after inflation
-  /// The start itself is blocked; the curve leaves the inflated cells and on the way never comes
+  /// The start itself is blocked. The curve leaves the inflated cells, and on the way never comes
   /// back by more than 2 cm towards an occupied one.
   bool escaping = false;
-  /// What is flown until a newer pair takes over, and the stop that is stored for the case that none
-  /// does, stay in observed-free cells with the hull and its margins (touchdown/planning/certify/stored_stop.h).
+  /// What is flown until a newer pair takes over, and the stop that is stored in case none does, stay in
+  /// observed-free cells. They do so with the hull and its margins (touchdown/planning/certify/stored_stop.h).
   bool stops_in_observed_space = false;
   StartCells start_cells;    ///< that the pair starts among, and only moves away from
   double clearance = 0.0;    ///< that `clear` or `escaping` stands for [m]
@@ -55,12 +55,15 @@ struct Certificate {
   }
 };
 
-/// Certifies `curve` from `t_from` to its end: its state there against `start` (nullptr: it starts
-/// there by construction), the endpoint against `wanted` (nullptr: none is required), the limits by
-/// the convex hull, the clearance by visiting every cell of `space` that the curve passes. A start
-/// beyond a limit, by its speed or by V_1 = v0 + h a0 / 2, which it fixes, is certified against the
-/// RecoveryProfile from the larger of the two on, and alike for the acceleration. What the vehicle may
-/// rely on until it rests is proven apart (ProvePair, ProveStop) and entered by the caller:
+/// Certifies `curve` from `t_from` to its end:
+/// - its state there against `start` (nullptr: it starts there by construction),
+/// - the endpoint against `wanted` (nullptr: none is required),
+/// - the limits by the convex hull,
+/// - the clearance by visiting every cell of `space` that the curve passes.
+///
+/// A start may be beyond the speed limit, by its speed or by V_1 = v0 + h a0 / 2, which it fixes. It is then
+/// certified against the RecoveryProfile from the larger of the two on. The same holds for the acceleration. The
+/// proof for the time until rest is separate (ProvePair, ProveStop), and the caller enters it:
 /// stops_in_observed_space, start_cells (Enter in stored_stop.h). Does not allocate.
 Certificate Certify(const UniformBspline& curve, double t_from, const SplineState* start,
                     const SplineState* wanted, const Limits& limits, const FreeSpace& space);

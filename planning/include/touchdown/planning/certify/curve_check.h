@@ -8,8 +8,8 @@
 
 namespace touchdown::planning {
 
-/// A stretch of a curve inside blocked cells. `t_in` is the last time before it that is free (or
-/// the start of the check), `t_out` the first after it (or the end of the curve).
+/// A stretch of a curve inside blocked cells. `t_in` is the last free time before it (or the start
+/// of the check), `t_out` the first after it (or the end of the curve).
 struct BlockedRun {
   double t_in = 0.0;
   double t_out = 0.0;
@@ -17,8 +17,8 @@ struct BlockedRun {
   bool at_end = false;    ///< and this one ends blocked
 };
 
-/// Visits every cell that the curve passes from t_from to its end, on chords whose sagitta is at
-/// most kChordSagitta, and collects the blocked runs in order. Appends to `runs` (cleared first).
+/// Visits every cell that the curve passes from t_from to its end. Uses chords whose sagitta is at
+/// most kChordSagitta. Collects the blocked runs in order in `runs` (cleared first).
 void FindBlockedRuns(const UniformBspline& curve, double t_from, const FreeSpace& space,
                      std::vector<BlockedRun>* runs);
 

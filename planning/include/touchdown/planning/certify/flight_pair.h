@@ -8,8 +8,8 @@
 
 namespace touchdown::planning {
 
-/// What is committed: a curve until the moment at which a newer pair can take over at the latest, and from
-/// then on a stop that was proven with it. It is flown without being asked (docs/safety.md).
+/// What is committed: a curve until the latest time at which a newer pair can take over, and from
+/// then on a stop that was proven with it. It is flown without further questions (docs/safety.md).
 struct FlightPair {
   UniformBspline curve;
   double t_stop = std::numeric_limits<double>::infinity();  ///< the stop begins [s]; infinite: the

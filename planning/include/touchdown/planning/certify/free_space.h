@@ -9,9 +9,9 @@
 
 namespace touchdown::planning {
 
-/// Where a plan may go: the inflated map, a floor and a ceiling for the body's origin, and the strip
-/// above the moving pad that has a floor of its own. Unknown space counts as free, but where `unseen` closes it. A view of the map,
-/// cheap to make anew for every replanning step.
+/// Where a plan may go: the inflated map, a floor and a ceiling for the body's origin, and the
+/// strip above the moving pad with its own floor. Unknown space counts as free, except where
+/// `unseen` closes it. A view of the map, cheap to make anew for every replanning step.
 struct FreeSpace {
   const OccupancyMap* map = nullptr;
   const UnseenZone* unseen = nullptr;                        ///< closed as well; nullptr: nothing
@@ -45,7 +45,7 @@ struct FreeSpace {
   bool Blocked(const Eigen::Vector3d& p_W) const {
     return !map->HasIndex(p_W) || Closed(map->CellOf(p_W)) || OffLevel(p_W);
   }
-  /// By an obstacle, or for want of having been seen.
+  /// By an obstacle, or because it was not seen.
   bool Closed(const CellIndex& cell) const {
     return map->IsBlocked(cell) || (unseen != nullptr && unseen->Holds(cell));
   }

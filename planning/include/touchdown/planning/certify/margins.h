@@ -5,7 +5,7 @@
 
 namespace touchdown::planning {
 
-/// What the room around the hull pays for, at one moment (docs/safety.md) [m].
+/// The parts of the room around the hull, at one moment (docs/safety.md) [m].
 struct Margins {
   double own_state =
       0.0;  ///< a cell was seen with one error of the own position, and is passed with another
@@ -15,9 +15,9 @@ struct Margins {
   double Sum() const { return own_state + attitude + tracking; }
 };
 
-/// Margins from what the vehicle knows: one standard deviation of its position [m] and of its attitude [rad], its recent
-/// distance from its reference [m], and the steady force on it over its mass [m/s^2]. Of the force the horizontal part
-/// counts: wind that pushes comes in gusts.
+/// Margins from the vehicle's own estimates: one standard deviation of its position [m] and of its
+/// attitude [rad], and its recent distance from its reference [m]. `pull_W` is the steady force on
+/// it over its mass [m/s^2]. Only its horizontal part counts: wind that pushes comes in gusts.
 Margins MarginsOf(double sigma_position, double sigma_attitude, double recent_tracking,
                   const Eigen::Vector3d& pull_W) noexcept;
 

@@ -22,16 +22,15 @@ struct HullSpace {
   const estimation::PadPrediction* pad = nullptr;
   double deck_half_size = 0.0;  ///< half the deck's side [m]
   double foot_depth = 0.0;      ///< of the feet below the body's origin [m]
-  /// Only what is seen to be occupied blocks: of a way that was proven before.
+  /// Only cells seen to be occupied block: for a trajectory that was proven before.
   bool unseen_passes = false;
-  /// The start is on a pair that was proven: what the hull starts among was observed free then, or the
-  /// deck's.
+  /// The start is on a proven pair: the cells among which the hull starts were observed free then, or are the deck's.
   bool start_proven = false;
 
   double radius() const { return hull_radius + margin; }
 };
 
-/// Cells that are not observed free among which a sweep starts. It moves away from those alone.
+/// Cells that are not observed free among which a sweep starts. It only moves away from these.
 struct StartCells {
   bool occupied = false;  ///< the hull is among some that are seen to be occupied
   bool unknown = false;   ///< ... that are neither, and to which no proven pair has led it
@@ -43,7 +42,7 @@ struct StartCells {
   }
 };
 
-/// What became of a look along a curve.
+/// The result of a sweep along a curve.
 struct Sweep {
   bool proven = false;
   StartCells start;
@@ -51,17 +50,17 @@ struct Sweep {
   std::optional<Eigen::Vector3d> unseen_W;
 };
 
-/// Where and when what is looked at begins.
+/// Where and when a sweep begins.
 struct HullStart {
   Eigen::Vector3d p_W = Eigen::Vector3d::Zero();  ///< of the body's origin [m]
   double t = 0.0;                                 ///< [s]
 };
 
-/// What SweepHull adds to the grown hull for the way between two places that it looks at [m].
+/// What SweepHull adds to the grown hull for the way between two positions that it tests [m].
 inline constexpr double kSweepRoom = 0.01;
 
-/// What the landing rule allows at contact, relative to the deck [m/s], and the share of it that a landing may use
-/// that is to be committed.
+/// What the landing rule allows at contact, relative to the deck [m/s]. A landing that is to be committed may use
+/// this share of it.
 inline constexpr double kSoftSink = 0.5;
 inline constexpr double kSoftDrift = 0.6;
 inline constexpr double kLandingRoom = 0.9;
@@ -70,12 +69,15 @@ inline constexpr double kLandingRoom = 0.9;
 inline constexpr double kAnyTime = -std::numeric_limits<double>::infinity();
 inline constexpr double kNever = std::numeric_limits<double>::infinity();
 
-/// Checks the curve from t_from to t_to [s], past its end at its end's velocity. The hull, grown by the margins, must
-/// stay in observed-free cells, and the body's origin between floor and ceiling. Exceptions:
+/// Checks the curve from t_from to t_to [s], past its end at its end's velocity. The hull, grown by
+/// the margins, must stay in observed-free cells, and the body's origin between floor and ceiling.
+/// Exceptions:
 /// - cells that end below the map's ground height;
-/// - while the body's origin may be over the deck (within the error of its prediction): cells that end at or below the
-///   deck's upper face, and cells over the deck where its returns lie by their noise, unless occupied;
-/// - at the start: cells around `start` that the hull already reached there, and does not come nearer to.
+/// - while the body's origin may be over the deck (within the error of its prediction): cells that
+///   end at or below the deck's upper face, and unless occupied also cells over the deck where the
+///   noise puts its returns;
+/// - at the start: cells around `start` that the hull already reached there and does not approach.
+///
 /// Before `t_contact` [s] the feet are above the deck while the hull may be over it, and sink softly close to it. A
 /// start that is lower and rises is allowed. Does not allocate.
 Sweep SweepHull(const UniformBspline& curve, double t_from, double t_to, const HullStart& start,

@@ -13,14 +13,15 @@ namespace touchdown::planning {
 
 struct HullSpace;
 
-/// Around a start, the cells in which the hull would touch what is not observed free: for the next stops
-/// they are as closed as an obstacle. A plan whose pair met such a cell is made again around them.
+/// Around a start, the cells in which the hull would touch cells that are not observed free. For
+/// the next stops they are as closed as an obstacle. A plan whose pair met such a cell is made
+/// again around them.
 class UnseenZone {
  public:
   static constexpr double kFarthest = 1.2;  ///< reach at most [m]
 
-  /// Of the cells within `reach` [m] of `start_W`. What the hull touches at the start already does not
-  /// close, nor what SweepHull excepts. Does not allocate.
+  /// Considers the cells within `reach` [m] of `start_W`. Cells that the hull touches at the start
+  /// already do not close, nor what SweepHull excepts. Does not allocate.
   void Build(const HullSpace& hull, const Eigen::Vector3d& start_W, double reach);
 
   bool Holds(const CellIndex& cell) const { return Row(cell, 1) != 0; }

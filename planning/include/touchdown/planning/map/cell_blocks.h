@@ -53,15 +53,15 @@ struct CellBlock {
   }
 };
 
-/// Log-odds of cells anywhere, in blocks: what leaves a window is dense, so that a block is found once for
-/// many cells. Has room for kReserved blocks from the start, and allocates beyond.
+/// Log-odds of cells anywhere, in blocks. Cells that leave a window are dense, so one look-up of a
+/// block serves many cells. Has room for kReserved blocks from the start, and allocates beyond.
 class CellBlocks {
  public:
   static constexpr int kReach =
       32768;  ///< cells that are farther from the world's origin are not kept
   static constexpr std::size_t kReserved = 1 << 13;
 
-  /// Says what is known of a block's cells before any was put: all are unknown when it is asked.
+  /// Gives what is known of a block's cells before any was put. All are unknown when it is called.
   using Fill = std::function<void(const CellIndex& low, CellBlock* block)>;
 
   explicit CellBlocks(Fill fill = nullptr);
@@ -85,8 +85,8 @@ class CellBlocks {
   static Key KeyOf(const CellIndex& cell);
   static CellIndex LowOf(Key key);
 
-  // The latest blocks, by where they are along x: a slab is gone through in rows, which come back to
-  // the same blocks again and again.
+  // The latest blocks, by where they are along x. A slab is traversed in rows, which return to the
+  // same blocks again and again.
   struct Latest {
     Key key = ~Key{0};
     CellBlock* block = nullptr;

@@ -11,10 +11,9 @@
 
 namespace touchdown::planning {
 
-/// What one depth frame says of the cells of a window: passed by a ray, or hit by a return.
-/// Coordinates are in cells, from the window's lowest corner: cell (x, y, z) is
-/// [x, x+1) x [y, y+1) x [z, z+1). Allocates in the constructor only (the list of hits grows to its
-/// high-water mark).
+/// The votes of one depth frame on the cells of a window: passed by a ray, or hit by a return.
+/// Coordinates are in cells, from the window's lowest corner: cell (x, y, z) is [x, x+1) x [y, y+1)
+/// x [z, z+1). Allocates in the constructor only (the list of hits grows to its high-water mark).
 class FrameVotes {
  public:
   static constexpr std::uint8_t kNone = 0;
@@ -30,8 +29,8 @@ class FrameVotes {
   /// Begins a frame seen from `eye`, which lies in the window.
   void Begin(const Eigen::Vector3d& eye);
 
-  /// Votes miss for the cells that the segment from the eye to `end` passes within the window, but
-  /// for the one that holds `end`: that one is seen in part only.
+  /// Votes miss for the cells within the window that the segment from the eye to `end` passes. The
+  /// cell that holds `end` is left out: the ray sees only a part of it.
   void AddRay(const Eigen::Vector3d& end);
 
   /// Votes for the cell of a return, if it is in the window.
@@ -44,7 +43,7 @@ class FrameVotes {
   const Eigen::Vector3i& low() const { return low_; }
   const Eigen::Vector3i& high() const { return high_; }
 
-  /// Takes the returns' votes out: calls visit(cell, vote) once for every cell in which one ended.
+  /// Removes the returns' votes: calls visit(cell, vote) once for every cell in which one ended.
   template <class Visit>
   void TakeReturns(Visit&& visit) {
     for (const Hit& hit : hits_) {
@@ -53,7 +52,8 @@ class FrameVotes {
     }
   }
 
-  /// Takes the votes of at most 64 cells from `first` on along x out, when the returns' have been. Bit i: miss.
+  /// Removes the votes of at most 64 cells from `first` on along x, after the returns' votes. Bit
+  /// i: miss.
   std::uint64_t TakeMisses(const Eigen::Vector3i& first, int count);
 
  private:
@@ -66,8 +66,8 @@ class FrameVotes {
     Eigen::Vector3i step;         ///< -1 or 1
     Eigen::Vector3i crossings;    ///< number of faces passed on each axis
   };
-  /// A coordinate at successive faces of another axis, in fixed point: shifted down by point_ it is
-  /// the coordinate's share of the address, but for bits below that share.
+  /// A coordinate at successive faces of another axis, in fixed point. Shifted down by point_ it is
+  /// the coordinate's share of the address, except for bits below that share.
   struct Track {
     std::int64_t at, by;
   };

@@ -22,8 +22,8 @@ namespace touchdown::planning {
 /// larger by it, so that what is checked on chords holds on the curve.
 inline constexpr double kChordSagitta = 0.002;
 
-/// Parameters of the rolling grid. Probabilities as in EGO-Planner's map, but for the threshold: what
-/// was seen once blocks, as in OctoMap.
+/// Parameters of the rolling grid. Probabilities as in EGO-Planner's map, except the threshold: a cell seen once
+/// blocks, as in OctoMap.
 struct OccupancyMapOptions {
   double resolution = 0.1;                ///< cell side [m]
   Eigen::Vector3i size_log2 = {8, 8, 6};  ///< window of 2^n cells a side: 25.6 x 25.6 x 6.4 m
@@ -46,18 +46,21 @@ inline bool IsGround(const CellIndex& cell, const OccupancyMapOptions& options) 
   return (cell.z() + 1) * options.resolution <= options.ground_height;
 }
 
-/// What a planner can tell of a cell: kFree is observed free. All else that does not block is unknown to it.
+/// The state of a cell for a planner. kFree is observed free. All other cells that do not block are unknown to it.
 enum class CellState : std::uint8_t { kUnknown, kFree, kOccupied };
 
-/// Rolling log-odds occupancy grid with incremental inflation. The window follows the vehicle; what
-/// leaves it is forgotten here, and handed to the listener that keeps it (touchdown/planning/map/persistent_map.h).
+/// Rolling log-odds occupancy grid with incremental inflation. The window follows the vehicle. Cells
+/// that leave it are forgotten here, and handed to the listener that keeps them
+/// (touchdown/planning/map/persistent_map.h).
 ///
-/// Plans take unknown cells for free. Stops may not (docs/safety.md): they stay in cells that were
-/// observed free, which is less. A cell is observed free once a ray has passed it
-///  - at a depth at which no obstacle of `thinnest_obstacle` fits between neighbouring pixels,
-///  - short of the ray's return by kNoiseSigmas of its noise;
-/// a hit ends that at once. A cell that was hit takes a miss only from nearer than it was hit from, or from
-/// so near that two pixels fall on the thinnest obstacle, and needs as many as its log-odds ask for. What was read from memory is not observed.
+/// Plans treat unknown cells as free. Stops must not (docs/safety.md): they stay in cells that were
+/// observed free, which are fewer. A cell is observed free once a ray has passed it
+/// - at a depth at which no obstacle of `thinnest_obstacle` fits between neighbouring pixels,
+/// - short of the ray's return by kNoiseSigmas of its noise.
+///
+/// A hit ends that at once. A cell that was hit takes a miss only from nearer than the hit, or from so near that two
+/// pixels fall on the thinnest obstacle. It needs as many misses as its log-odds demand. Cells read from memory are
+/// not observed.
 ///
 /// Returns that may be the pad's are kept apart (touchdown/planning/map/pad_outline.h): their cells are neither free
 /// nor occupied until ExplainDoubts.
@@ -74,9 +77,10 @@ class OccupancyMap {
   const OccupancyMapOptions& options() const { return options_; }
   double resolution() const { return options_.resolution; }
 
-  /// Keeps the window's centre near p_W: centres it along the axis on which p_W is farthest off, once that is four cells;
-  /// along all axes once p_W is 16 cells off on any, or an eighth of the window. Cells that enter are unknown. Cells that leave are
-  /// forgotten; those that have changed since they entered or were last taken are put in `memory` before.
+  /// Keeps the window's centre near p_W. It is centred along the axis on which p_W is farthest off, once that is four
+  /// cells. It is centred along all axes once p_W is 16 cells off on any, or an eighth of the window. Cells that
+  /// enter are unknown. Cells that leave are forgotten. Those that have changed since they entered or were last taken
+  /// are first put in `memory`.
   void Recentre(const Eigen::Vector3d& p_W, CellBlocks* memory = nullptr);
 
   /// Moves the window so that `origin` is its lowest cell.
@@ -88,24 +92,22 @@ class OccupancyMap {
   /// What entered in the last Recentre or MoveWindow: disjoint boxes, at most three.
   const std::vector<CellBox>& entered() const { return entered_; }
 
-  /// Gives a cell what is remembered of it; that is no change. The log-odds are clamped to this map's
-  /// limits. Ignored out of the window, and for an obstacle that lies below ground_height as a whole:
-  /// that is ground.
+  /// Gives a cell its remembered value, which does not count as a change. The log-odds are clamped to this map's
+  /// limits. Ignored out of the window, and for an obstacle that lies below ground_height as a whole: that is ground.
   void Restore(const CellValue& value);
 
   /// Appends every cell of the window that changed since it entered or was last taken.
   void TakeChanges(std::vector<CellValue>* changes);
 
-  /// Fuses one depth frame. Every cell is updated at most once: as hit if a return ends in it, else
-  /// as miss if a ray frees it. A return from the ground hits nothing; one from `pad`, which is where the
-  /// pad was when the frame was taken, makes its cell unknown, one that may be from it makes it
-  /// doubtful. A camera out of the window says nothing, nor does
-  /// one that cannot be (estimation::IsPossible).
+  /// Fuses one depth frame. Every cell is updated at most once: as hit if a return ends in it, else as miss if a ray
+  /// frees it. A return from the ground hits nothing. `pad` is where the pad was when the frame was taken. A return
+  /// from it makes its cell unknown, one that may be from it makes it doubtful. A frame is ignored if its camera is
+  /// out of the window or impossible (estimation::IsPossible).
   /// @throws std::invalid_argument if the frame has not width x height depths.
   void Integrate(const estimation::DepthFrame& frame, const PadOutline& pad);
 
-  /// Settles what was doubtful, now that the pad is known: `outline_at(t)` [s] gives a PadOutline. Doubtful
-  /// cells whose every return it explains at its time become unknown, the others occupied.
+  /// Settles the doubtful cells, now that the pad is known: `outline_at(t)` [s] gives a PadOutline. If the outline
+  /// explains every return of a cell at its time, the cell becomes unknown, otherwise occupied.
   template <class OutlineAt>
   void ExplainDoubts(OutlineAt&& outline_at);
 
@@ -113,15 +115,15 @@ class OccupancyMap {
   /// std::invalid_argument where p_W is not finite.
   void SetOccupied(const Eigen::Vector3d& p_W);
 
-  /// Marks the cells within `radius` of p_W that are not occupied as observed free: what is given around
-  /// the start, or known otherwise. Throws std::invalid_argument unless p_W is finite and radius in [0, 1e4] m.
+  /// Marks the cells within `radius` of p_W that are not occupied as observed free: those around the start, or known
+  /// otherwise. Throws std::invalid_argument unless p_W is finite and radius in [0, 1e4] m.
   void MarkFree(const Eigen::Vector3d& p_W, double radius);
 
-  /// Takes every cell of the window that is not occupied as observed free: all of the map is known
+  /// Marks every cell of the window that is not occupied as observed free: the whole map is known
   /// beforehand.
   void MarkRestFree();
 
-  /// A place so near that its cell has an index; farther off, or not finite, it is in no window.
+  /// A place so near that its cell has an index. Farther off, or not finite, it is in no window.
   bool HasIndex(const Eigen::Vector3d& p_W) const {
     constexpr double kMostCells = 1e9;  // that an index counts
     return (p_W.array().abs() < kMostCells * options_.resolution).all();
@@ -139,7 +141,7 @@ class OccupancyMap {
 
   /// Blocked after inflation. Out of the window: free (unknown).
   bool IsBlocked(const CellIndex& cell) const { return InWindow(cell) && BlockedRow(cell, 1) != 0; }
-  /// A place that is none, for want of a finite number, is blocked.
+  /// A place with a number that is not finite is blocked.
   bool IsBlocked(const Eigen::Vector3d& p_W) const {
     return HasIndex(p_W) ? IsBlocked(CellOf(p_W)) : !p_W.allFinite();
   }
@@ -267,7 +269,7 @@ class OccupancyMap {
   CellIndex size_;
   CellIndex mask_;
   std::int8_t miss_, min_, max_, occupied_;  // log-odds in steps of kLogOddsStep
-  // What log-odds become by a miss and by a hit: unknown and the clamps are settled here once.
+  // Log-odds after a miss and after a hit: unknown and the clamps are settled here once.
   std::array<std::int8_t, 256> after_miss_, after_hit_;
   std::vector<BallRow> ball_;  // cells that one obstacle cell blocks, by half
   int ball_reach_ = 0;         // its largest extent along an axis

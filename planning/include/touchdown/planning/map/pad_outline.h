@@ -9,23 +9,23 @@
 
 namespace touchdown::planning {
 
-/// What a return of the depth camera may come from.
+/// The possible source of a depth camera's return.
 enum class ReturnKind : std::uint8_t {
   kObstacle,  ///< not from the pad
   kPad,       ///< the pad is surely there
   kDoubtful,  ///< the pad may be there
 };
 
-/// The pad vehicle at one moment, as well as it is known: a square deck with all that is below it.
+/// The estimated pad vehicle at one moment: a square deck with all that is below it.
 struct PadOutline {
   Eigen::Vector3d p_WP = Eigen::Vector3d::Zero();  ///< centre of the deck's upper face in W [m]
   double yaw = 0.0;                                ///< of the deck [rad]
   double half_size = 0.0;                          ///< half the deck's side [m]; 0: there is no pad
   double sigma = 0.0;                              ///< 1 sigma of the horizontal position [m]
 
-  /// What a return at p_W comes from, where `tolerance` [m] is the return's own error. The pad grown by
-  /// kSigmas of its position explains it; once that is more than kSure the answer is in doubt. Does not
-  /// allocate.
+  /// The source of a return at p_W, where `tolerance` [m] is the return's own error. The pad grown
+  /// by kSigmas of its position explains it. If that growth is more than kSure the answer is in
+  /// doubt. Does not allocate.
   ReturnKind Classify(const Eigen::Vector3d& p_W, double tolerance) const;
 
   /// Known so well that no return is in doubt.

@@ -11,7 +11,7 @@ struct BoundPart {
   double to = 0.0;    ///< [s]
 };
 
-/// What a plan was bound to, in no order: the next step binds the same again, on the map of then.
+/// What a plan was bound to, in no order: the next step binds the same again, on its own map.
 using BoundParts = std::vector<BoundPart>;
 
 }  // namespace touchdown::planning

@@ -21,7 +21,7 @@ enum class EndpointMode { kEliminated, kExplicit };
 /// Terms that are limits are costs that act from a margin on, or rows u <= 0 at the full limit.
 enum class LimitsMode { kSoft, kHard };
 
-/// How a landing is put as a problem: its terms, and how ends and limits are kept.
+/// How a landing is formulated as a problem: its terms, and how ends and limits are kept.
 struct Formulation {
   EndpointMode endpoint = EndpointMode::kEliminated;
   LimitsMode limits_mode = LimitsMode::kSoft;
@@ -40,7 +40,7 @@ struct LandingProblemOptions : Formulation {
   int max_obstacles = 0;       ///< room for moving ones (SetObstacles)
 };
 
-/// What the boundary fixes whatever the solver does: no rows, but facts to look at first.
+/// What the boundary fixes whatever the solver does: not rows, but facts to check first.
 struct BoundaryFacts {
   double start_speed = 0.0;         ///< |v0| [m/s]
   double start_acceleration = 0.0;  ///< |a0| = |A_0| [m/s^2]
@@ -95,14 +95,14 @@ class LandingProblem {
   /// Of the present boundary and duration. Throws std::invalid_argument before SetBoundary.
   BoundaryFacts boundary_facts() const;
 
-  /// The view's variables at the quintic Hermite guess, and the interval if it is free. This one and those that
-  /// follow throw std::invalid_argument before SetBoundary.
+  /// The view's variables at the quintic Hermite guess, and the interval if it is free. This and the following throw
+  /// std::invalid_argument before SetBoundary.
   Eigen::VectorXd Guess() const;
   /// The same without allocation, once `y` has this size.
   void Guess(Eigen::VectorXd* y) const;
-  /// The variables at the rest of `previous`, stretched to the present duration and moved to the present
-  /// ends (planning/problem/warm_start.h): the shape stays, wherever start and pad are now. With an explicit
-  /// endpoint as Guess. Does not allocate once `y` has this size.
+  /// The variables at the rest of `previous`, stretched to the present duration and moved to the present ends
+  /// (planning/problem/warm_start.h). The shape stays, wherever start and pad are now. With an explicit endpoint as
+  /// Guess. Does not allocate once `y` has this size.
   void WarmGuess(const UniformBspline& previous, Eigen::VectorXd* y);
   /// The spline at the view's variables y. Allocates its control points.
   UniformBspline Curve(const Eigen::VectorXd& y) const;

@@ -4,9 +4,9 @@
 //
 //     void Update(const LandingContext& context);   // before every solve; must not allocate
 //
-// and one function that returns its TermEntry. Everything else, the choice between cost and rows,
-// the samples of the derivative checks, scenario keys and `touchdown list terms`, follows from the
-// entry. docs/adding_a_term.md shows whole examples.
+// and one function that returns its TermEntry. Everything else follows from the entry: the choice
+// between cost and rows, the samples of the derivative checks, scenario keys and `touchdown list
+// terms`. docs/adding_a_term.md shows whole examples.
 #pragma once
 
 #include <concepts>
@@ -40,7 +40,7 @@ struct MovingObstacle {
   Eigen::Vector3d semi_axes = {0.5, 0.5, 0.5};     ///< > 0, the vehicle's own size included [m]
 };
 
-/// What a solve is about. What it points to outlives the solve.
+/// The data of one solve. What it points to outlives the solve.
 struct LandingContext {
   int segments = 0;       ///< M
   SplineState start;      ///< at knot 0
@@ -90,8 +90,8 @@ struct TermSetup {
   solvers::HingeLoss Hinge() const { return solvers::HingeLoss(weight, Get("width")); }
 };
 
-/// When a landing problem can use a term at all. kMovingObstacles: where LandingProblem is told of some, which a flight
-/// is not.
+/// When a landing problem can use a term at all. kMovingObstacles: only if LandingProblem is given
+/// some, which flights do not do.
 enum class TermUse { kAlways, kFreeArrival, kExplicitEndpoint, kMovingObstacles };
 
 /// Where in W a term acts, for pictures.
@@ -129,7 +129,7 @@ struct TermSettings {
   std::vector<std::pair<std::string, double>> parameters;
 };
 
-/// A term that wants to know of every solve before it begins, or that can be pressed harder.
+/// A term that is informed of every solve before it begins, or whose weight can be raised.
 class ContextUser {
  public:
   virtual ~ContextUser() = default;

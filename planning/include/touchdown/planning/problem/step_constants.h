@@ -6,9 +6,9 @@
 
 namespace touchdown::planning {
 
-/// The numbers that a step decides by on its way to a plan, beside the budgets and counts of ReplannerOptions; those
-/// of the ladder below a plan are in fallback_ladder.cc and fallback.cc. `StepConstantTable` tells what each is; what
-/// each is worth is measured by `touchdown study replan --parts sensitivity`.
+/// The numbers that decide a step on its way to a plan, beside the budgets and counts of ReplannerOptions. Those of
+/// the ladder below a plan are in fallback_ladder.cc and fallback.cc. `StepConstantTable` explains each. `touchdown
+/// study replan --parts sensitivity` measures their effect.
 struct StepConstants {
   // Ways past what blocks a curve (way_finder.h).
   double heuristic_weight = 2.0;
@@ -57,9 +57,8 @@ std::span<const StepConstant> StepConstantTable();
 
 double ValueOf(const StepConstants& constants, const StepConstant& which);
 
-/// The constants with one of them so many times as far from its least value; a count is rounded, and changed by
-/// one at least.
-/// Throws std::invalid_argument unless factor is positive and finite.
+/// The constants with one of them at so many times its distance from its least value. A count is rounded, and changed
+/// by one at least. Throws std::invalid_argument unless factor is positive and finite.
 StepConstants Scaled(const StepConstants& constants, const StepConstant& which, double factor);
 
 }  // namespace touchdown::planning

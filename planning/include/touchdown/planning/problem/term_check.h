@@ -10,9 +10,9 @@
 
 namespace touchdown::planning {
 
-/// Derivatives of a term count as right up to this relative error (DerivativeErrors).
-/// Central differences of a hinge are this good at its edge, where the third derivative jumps (worst
-/// of 130 random runs over all terms: 4e-5); a wrong derivative is off by percents.
+/// Derivatives of a term count as right up to this relative error (DerivativeErrors). Central
+/// differences of a hinge are this good at its edge, where the third derivative jumps. The worst of
+/// 130 random runs over all terms was 4e-5. A wrong derivative is off by percents.
 inline constexpr double kTermCheckTolerance = 1e-4;
 
 struct TermCheckOptions {
@@ -22,8 +22,8 @@ struct TermCheckOptions {
 };
 
 enum class CheckedView { kFull, kReduced, kWhitened };
-/// Where derivatives are compared: at a random point, at one where some u is 0 to rounding (the
-/// edge of a hinge, an active row), and at one just beyond it.
+/// Where derivatives are compared: at a random point, at one where some u is 0 to rounding, and at
+/// one just beyond it. u = 0 is the edge of a hinge or an active row.
 enum class CheckedPoint { kRandom, kZero, kActive };
 
 /// The worst errors of one kind of view, role and point.
@@ -41,18 +41,18 @@ struct TermCheckRow {
   double least_curvature = 0.0;  ///< lowest eigenvalue of its Hessian over the largest, if below 0
 };
 
-/// A cost that claims to be convex may bend the other way by this share, which is rounding.
+/// A cost that claims to be convex may be concave by this share, which is rounding.
 inline constexpr double kTermCheckConvexity = 1e-9;
 
 /// Compares gradient, Hessian, residual and row Jacobians of a term with central differences on
-/// every view, as cost and as rows, in random landings whose end acceleration is fixed or free. The
+/// every view, as cost and as rows. The random landings have a fixed or free end acceleration. The
 /// term is made with its default parameters and weight 1. Throws std::invalid_argument if an option
 /// is out of range.
 std::vector<TermCheckRow> CheckTerm(const TermEntry& entry, const TermCheckOptions& options);
 
-/// One sentence on what is wrong; empty if nothing is: every row that compared something is within
-/// the tolerance, windows were evaluated, a hinge's edge was reached, and what claims to be convex
-/// is.
+/// One sentence on what is wrong; empty if nothing is. Then every row that compared something is
+/// within the tolerance, windows were evaluated, a hinge's edge was reached, and what claims to be
+/// convex is.
 std::string Complaint(const std::vector<TermCheckRow>& rows);
 /// Without a complaint.
 bool Passed(const std::vector<TermCheckRow>& rows);

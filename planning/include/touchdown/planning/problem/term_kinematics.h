@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Building blocks of inner maps: states at a knot from a window of three control points, and
-// things that move with time in a form that automatic differentiation follows.
+// quantities that move with time. The latter have a form that automatic differentiation follows.
 #pragma once
 
 #include <algorithm>
@@ -51,8 +51,8 @@ T Dot(const Triple<T>& a, const Triple<T>& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// x(t) whose value and first two derivatives at ValueOf(t) are given: exact to second order, which
-/// is all that derivatives ask.
+/// x(t) whose value and first two derivatives at ValueOf(t) are given. Exact to second order, which
+/// is enough for derivatives.
 template <class T>
 Triple<T> AtTime(const T& t, const Eigen::Vector3d& x, const Eigen::Vector3d& dx,
                  const Eigen::Vector3d& d2x) {
@@ -69,8 +69,8 @@ Triple<T> PadPosition(const estimation::PadPrediction& pad, const T& t) {
   return AtTime(t, at.p_WP, at.v_WP, at.a_WP);
 }
 
-/// The inner knots k = 1..M-1 that lie in the last `span` seconds before arrival, by the interval
-/// of the guess: which knots these are does not change during a solve. Windows of three blocks.
+/// The inner knots k = 1..M-1 in the last `span` seconds before arrival, by the interval of the
+/// guess. They do not change during a solve. Windows of three blocks.
 struct LastKnots {
   int first = 1;
   int count = 0;

@@ -27,7 +27,7 @@ class GoalAt final : public estimation::PadPrediction {
   Eigen::Vector3d p_W_;
 };
 
-/// A point that moves as a function of time says.
+/// A point that moves by a function of time.
 class MovingGoal final : public estimation::PadPrediction {
  public:
   using Position = std::array<Taylor, 3>;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A replanning step written down: what it tried on the way to its answer. Plain data.
+// A log of a replanning step: what it tried on the way to its answer. Plain data.
 #pragma once
 
 #include <optional>

@@ -39,7 +39,7 @@ struct ReplannerOptions {
   double min_duration = 0.8;     ///< shortest plan: a vehicle above the pad keeps following [s]
   double min_contact_duration = 0.3;  ///< ... and one that is to end in contact [s]
   double odometry_threshold = 0.5;  ///< tracking error beyond which plans start at the vehicle [m]
-  /// A plan is flown at least this long before its stop, if no newer one comes [s]; longer by a caller whose last two
+  /// A plan is flown at least this long before its stop, if no newer one comes [s]. Longer if the caller's last two
   /// answers took over farther apart.
   double reaction = 0.15;
   double segment_length = 0.75;  ///< of a plan's segment at full speed, at most [m]
@@ -50,11 +50,11 @@ struct ReplannerOptions {
   bool warm_start = true;        ///< a solve begins at the rest of the committed plan
   int max_rebinds = 3;           ///< solve / check / re-bind rounds per attempt
   int max_iterations = 50;       ///< solver iterations per solve
-  /// A solve ends so near to the optimum, as a share of the cost (solvers::Stop::gap): not the last digits of
-  /// an optimum make a plan, but its certificate.
+  /// A solve ends this near to the optimum, as a share of the cost (solvers::Stop::gap). A plan needs its
+  /// certificate, not the last digits of an optimum.
   double gap = 5e-3;
-  /// What a step may do (work_budget.h). Without a plan to fly the next one goes on: behind a first attempt that
-  /// did not fit, at a later one.
+  /// Budget of a step (work_budget.h). If there is no plan to fly, the next step continues: after a first attempt
+  /// that did not fit, at a later one.
   int max_work = 10000;
   StepConstants constants;  ///< what else a step decides by
 };
@@ -66,8 +66,8 @@ struct ReplanInput {
   estimation::VehicleState vehicle;  ///< estimated state at t_now
   const estimation::PadPrediction* pad = nullptr;
   EndpointTarget endpoint;
-  /// Steady force on the vehicle beside gravity and drag in still air, over its mass, in W: plans keep
-  /// what it leaves of the limits (LimitsUnder) [m/s^2].
+  /// Steady force on the vehicle beside gravity and drag in still air, over its mass, in W [m/s^2]. Plans keep the
+  /// limits that it leaves (LimitsUnder).
   Eigen::Vector3d pull_W = Eigen::Vector3d::Zero();
   Margins margins;  ///< around the hull, until it rests
 };
@@ -155,21 +155,21 @@ class PathList {
 struct ReplanResult : FlightPair {
   ReplanStatus status = ReplanStatus::kHolding;
   ReplanReason reason = ReplanReason::kNone;
-  /// With kInvalidInput what of the input is not valid. How the EGO-Planner baseline calls the outcome of its plan
-  /// call. Else empty.
+  /// With kInvalidInput the part of the input that is not valid. For the EGO-Planner baseline its name of its plan
+  /// call's outcome. Else empty.
   std::string_view detail;
-  bool ends_in_contact = false;  ///< what is asked for is a plan that does
+  bool ends_in_contact = false;  ///< the requested plan does
   bool idle = false;             ///< the planner had nothing to do: there is no answer
   bool committed = false;        ///< a pair was proven in this step and takes over at t_start
   bool from_odometry = false;    ///< started at the vehicle, not at the old plan
   FlightPair& pair() { return *this; }
   const FlightPair& pair() const { return *this; }
   Certificate certificate;
-  /// The stored stop is flown, and a cell of its tube is not free any more, or the hull is in one that is
-  /// occupied: the map was wrong.
+  /// The map was wrong: the stored stop is flown, and a cell of its tube is not free any more, or the hull is in an
+  /// occupied one.
   bool map_error = false;
-  /// The first cell that is not observed free and that the next stops will need: of the plan beyond its
-  /// own stop, or of the first that was not proven for want of it. In W [m].
+  /// The first cell that is not observed free and that the next stops will need. It belongs to the plan beyond its
+  /// own stop, or to the first plan that was not proven because of it. In W [m].
   std::optional<Eigen::Vector3d> unseen_W;
   PathList guide_paths;           ///< A* paths of this step
   int pairs = 0;                  ///< {p, v} pairs bound at the end

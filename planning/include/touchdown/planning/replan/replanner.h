@@ -40,7 +40,7 @@ struct ReplannerState {
 class Replanner : public Planner {
  public:
   /// Throws std::invalid_argument if an option is out of range, or if the backend is unknown or
-  /// cannot do what the options ask (the sentence says which).
+  /// cannot do what the options ask. The sentence says which.
   Replanner(const ReplannerOptions& options, const solvers::BackendRegistry& backends);
   ~Replanner() override;
   Replanner(const Replanner&) = delete;
@@ -52,15 +52,14 @@ class Replanner : public Planner {
   void CommitHover(const Eigen::Vector3d& p_W, double t) override;
 
   /// One replanning step against the map. The result stays valid until the next call. Throws std::invalid_argument
-  /// before the first CommitHover. Whatever comes
-  /// out is a proven pair, or says that it is not (docs/safety.md). Nothing can be proven in what the map has not observed: a
-  /// map that was filled by hand needs MarkFree, one of a sensor at least around the start.
+  /// before the first CommitHover. The result is a proven pair, or says that it is not (docs/safety.md). Nothing can
+  /// be proven in cells that the map has not observed. So a map that was filled by hand needs MarkFree, one of a
+  /// sensor at least around the start.
   const ReplanResult& Replan(const ReplanInput& input, const OccupancyMap& map) override;
 
-  /// Comes to rest and stays, for want of a pad to go to: a certified braking trajectory, or with
-  /// `climb` > 0 [m] one that ends that much higher. Once it is under way it is kept.
-  /// `input.pad`, nullptr where nothing is known of it, is the deck that it may start above; `input.endpoint`
-  /// says whether a contact is still wanted.
+  /// Comes to rest and stays because there is no pad to go to. It flies a certified braking trajectory, or with
+  /// `climb` > 0 [m] one that ends that much higher. Once begun, it is kept. `input.pad`, nullptr where nothing is
+  /// known of it, is the deck that it may start above. `input.endpoint` says whether a contact is still wanted.
   const ReplanResult& Rest(const ReplanInput& input, double climb,
                            const OccupancyMap& map) override;
 
@@ -76,8 +75,8 @@ class Replanner : public Planner {
   ReplannerState state() const;
   void Restore(const ReplannerState& state);
 
-  /// The steps from now on are written down in `log` (cleared at each), nullptr: no more. It must
-  /// outlive the steps. Allocates in the steps; what they decide stays the same.
+  /// The following steps are logged in `log` (cleared at each); nullptr ends it. It must outlive
+  /// the steps. Allocates in the steps; their decisions stay the same.
   void set_log(ReplanLog* log);
 
  private:

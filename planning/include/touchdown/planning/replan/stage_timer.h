@@ -11,11 +11,11 @@
 
 namespace touchdown::planning {
 
-/// Adds the wall and thread CPU time of its own lifetime, and the allocations in it, to a span; shows
-/// it to the log that listens to the thread, if there is one. Does not allocate.
+/// Adds the wall and thread CPU time of its own lifetime, and the allocations in it, to a span.
+/// Shows it to the log that listens to the thread, if there is one. Does not allocate.
 ///
-/// To read the thread's clock is a system call: of the stages within a step it made up 6 % of the slowest
-/// steps. So they ask for kWhileLogged: their CPU time is NaN unless a log listens.
+/// Reading the thread's clock is a system call. For the stages within a step it made up 6 % of the
+/// slowest steps. So they ask for kWhileLogged: their CPU time is NaN unless a log listens.
 class StageTimer {
  public:
   enum Cpu { kAlways, kWhileLogged };

@@ -11,8 +11,8 @@
 namespace touchdown::planning {
 
 /// Control points of the spline with `segments` segments of length `duration` that meets both end
-/// states exactly and follows the quintic Hermite polynomial between them: the first guess, and the
-/// braking and climbing trajectories.
+/// states exactly. Between them it follows the quintic Hermite polynomial. For the first guess, and
+/// for braking and climbing trajectories.
 ControlPoints HermiteControlPoints(const SplineState& start, const SplineState& end, int segments,
                                    double duration);
 
@@ -20,20 +20,20 @@ ControlPoints HermiteControlPoints(const SplineState& start, const SplineState& 
 void HermiteControlPoints(const SplineState& start, const SplineState& end, double duration,
                           Eigen::Ref<ControlPoints> points);
 
-/// What one control point takes of the end values (p0, h v0, h^2 a0, P, h V, h^2 A).
+/// The weights of the end values (p0, h v0, h^2 a0, P, h V, h^2 A) in one control point.
 struct BoundaryWeights {
   using Column = std::array<Eigen::Vector3d, 6>;
   std::array<double, 6> of;
 };
 
 /// Exact elimination of both ends, with the boundary lift (docs/formulation.md):
-///   Q_0..Q_2 from (p0, v0, a0),  Q_i = quintic_i + y_i between,  Q_{N-3}..Q_{N-1} from (P, V,
-///   delta).
-/// Where the end acceleration is free, delta is the last reduced block; where it is fixed,
-/// delta = -h^2 A / 6 with the pad's own acceleration A. The pad's snap is not predicted, so that
-/// with a fixed end acceleration second derivatives with respect to a free h lack its share.
-/// As LiftOffset it gives the offsets and their derivatives as the interval, and with it the
-/// arrival time t0 + M h, moves. Reads the pad prediction at every call.
+///   Q_0..Q_2 from (p0, v0, a0),  Q_i = quintic_i + y_i between,
+///   Q_{N-3}..Q_{N-1} from (P, V, delta).
+/// If the end acceleration is free, delta is the last reduced block. If it is fixed,
+/// delta = -h^2 A / 6 with the pad's own acceleration A. The pad's snap is not predicted. So with a
+/// fixed end acceleration second derivatives with respect to a free h lack its share.
+/// As LiftOffset it gives the offsets and their derivatives with respect to the interval. The
+/// arrival time t0 + M h moves with the interval. Reads the pad prediction at every call.
 class BoundaryLift : public solvers::LiftOffset {
  public:
   /// Throws std::invalid_argument unless segments >= 4.

@@ -8,8 +8,8 @@
 
 namespace touchdown::planning {
 
-/// Where a plan ends, relative to the moving pad (eq. 17-18): a height of the body's origin above
-/// the deck that may sink with time, and the approach velocity w at arrival.
+/// Where a plan ends, relative to the moving pad (eq. 17-18). It has a height of the body's origin
+/// above the deck, which may sink with time, and the approach velocity w at arrival.
 struct EndpointTarget {
   double t_reference = 0.0;   ///< when `height` holds [s]
   double height = 1.5;        ///< body origin above the deck at t_reference [m]
@@ -17,11 +17,11 @@ struct EndpointTarget {
   double height_floor = 0.0;  ///< the height never goes below this [m]
   /// A plan that ends in contact sinks at arrival, whatever the height does until then: >= 0 [m/s].
   double arrival_sink = 0.0;
-  /// The end stands still, whatever velocity the pad has: w alone is its velocity. To show what the
-  /// moving end is worth.
+  /// The end stands still, whatever velocity the pad has: w alone is its velocity. To show the
+  /// benefit of the moving end.
   bool at_rest = false;
-  /// Velocity relative to the pad's with which the end is passed, in W [m/s]: of a point on the way that is no
-  /// place to stay. No record holds it: no mission asks for it.
+  /// Velocity relative to the pad's at the end, in W [m/s], for an end that is only passed. No
+  /// record holds it: no mission asks for it.
   Eigen::Vector3d passing_W = Eigen::Vector3d::Zero();
 
   /// Whether the plan is to end in contact.
@@ -34,7 +34,7 @@ struct EndpointTarget {
 };
 
 /// The end condition at an arrival time, with the derivatives with respect to it that free arrival
-/// needs: dp/dT = pad velocity + rate of the height, dv/dT = pad acceleration, da/dT = pad jerk.
+/// needs. dp/dT = pad velocity + rate of the height, dv/dT = pad acceleration, da/dT = pad jerk.
 struct EndState {
   SplineState state;              ///< wanted p, v, a at arrival, in W
   SplineState derivative;         ///< d(state)/dT

@@ -6,9 +6,10 @@
 
 namespace touchdown::planning {
 
-/// A trajectory from `start` at t0 to rest, `shift` away from where it would stop otherwise: with
-/// no shift a braking trajectory with its real braking distance. The shortest duration of a
-/// geometric series whose derivative hulls keep the limits (or the start's own excess of them).
+/// A trajectory from `start` at t0 to rest, `shift` away from where it would otherwise stop. With
+/// no shift it is a braking trajectory with its real braking distance. Its duration is the shortest
+/// of a geometric series whose derivative hulls keep the limits (or the start's own excess of
+/// them).
 UniformBspline MakeRestTrajectory(const SplineState& start, double t0, const Eigen::Vector3d& shift,
                                   const Limits& limits);
 

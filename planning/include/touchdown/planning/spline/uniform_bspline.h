@@ -19,7 +19,7 @@ struct SplineState {
   Eigen::Vector3d a = Eigen::Vector3d::Zero();  ///< [m/s^2]
 };
 
-/// Uniform cubic B-spline in R^3 (eq. 12-15 of the paper): N control points Q_0..Q_{N-1} and a knot
+/// Uniform cubic B-spline in R^3 (eq. 12-15 of the paper). N control points Q_0..Q_{N-1} and a knot
 /// interval h span M = N - 3 segments, T = M h. Time runs from t0 to t0 + T.
 class UniformBspline {
  public:
@@ -79,13 +79,13 @@ class UniformBspline {
   double t0_ = 0.0;
 };
 
-/// Largest norms that velocity and acceleration can take anywhere on the curve, by the convex hull
-/// of the Bezier points of its derivatives (per segment: the two knot values and, for the velocity,
-/// the derivative control point between them).
+/// Largest norms that velocity and acceleration can take anywhere on the curve. They come from the
+/// convex hull of the Bezier points of its derivatives. Per segment these are the two knot values
+/// and, for the velocity, the derivative control point between them.
 struct DerivativeBounds {
   double speed = 0.0;         ///< [m/s]
   double acceleration = 0.0;  ///< [m/s^2]
-  /// Of the thrust axis of who flies it exactly, against the pull [rad/s].
+  /// Of the thrust axis of a vehicle that flies it exactly, against the pull [rad/s].
   double body_rate = 0.0;
 };
 /// @param pull_W a steady force over the mass that acts beside gravity [m/s^2].

@@ -9,9 +9,9 @@
 namespace touchdown::solvers {
 
 /// The constraint rows of a view as one flat list lo <= u_r(y) <= hi with a sparse Jacobian, for
-/// backends that want them so. Rows follow the terms, in each its active windows, in each its
-/// outputs. A row on eliminated blocks alone at a fixed interval is a constant: no solver can move
-/// it, so it is left out here and only its violation is kept.
+/// backends that want them so. Rows are ordered by term, then active window, then output. A row on
+/// eliminated blocks alone at a fixed interval is a constant, which no solver can change. It is
+/// left out here, and only its violation is kept.
 class ConstraintRows {
  public:
   /// Allocates for the most rows that views of this structure can have. With `bounds` those of

@@ -8,9 +8,9 @@
 
 namespace touchdown::solvers {
 
-/// Worst disagreement between derivatives and central differences, relative to the largest number
-/// of the two compared arrays, or to what the differences themselves can resolve where that is
-/// larger; infinite where a number is not finite. A residual whose u changes sign between the two
+/// Worst disagreement between derivatives and central differences. It is relative to the largest
+/// number of the two compared arrays, or to the differences' own resolution where that is larger.
+/// It is infinite where a number is not finite. A residual whose u changes sign between the two
 /// points is compared with the one-sided differences.
 struct DerivativeErrors {
   bool evaluated = false;          ///< false: the point could not be evaluated
@@ -22,8 +22,8 @@ struct DerivativeErrors {
   double worst() const;            ///< infinite where nothing was evaluated
 };
 
-/// Checks every derivative that `view` offers at y by central differences that move no variable by
-/// more than `step`; with a `whitening` (set for this view) those of the Whitened view at
+/// Checks every derivative that `view` offers at y by central differences. No variable moves by
+/// more than `step`. With a `whitening` (set for this view) it checks those of the Whitened view at
 /// z = L^T y. Allocates.
 DerivativeErrors CheckDerivatives(const View& view, const Eigen::VectorXd& y,
                                   const Lagrangian& lagrangian = {}, double step = 1e-6,

@@ -13,9 +13,8 @@ namespace touchdown::solvers {
 /// What a moment of a solve is charged to; see SolveShares.
 enum class Share { kAdapter, kEvaluation, kWhitening, kNative };
 
-/// Every evaluation of a solve goes through here, whatever the backend: it counts, caches the last
-/// point, asks Stop, and keeps the best feasible iterate, so that no backend has to be trusted with
-/// any of this.
+/// Every evaluation of a solve goes through here, whatever the backend. It counts, caches the last
+/// point, asks Stop, and keeps the best feasible iterate. No backend has to be trusted with this.
 class Evaluator {
  public:
   /// A point counts as feasible up to this constraint violation.
@@ -30,8 +29,8 @@ class Evaluator {
   void Begin(const View& view, const Stop& stop, GapRule* rule = nullptr);
 
   /// Evaluates the objective and all rows at y; false if a term could not. A backend may ask for
-  /// value, gradient and Hessian one by one: what is known of the last point is not forgotten, and
-  /// only a new point counts as an evaluation.
+  /// value, gradient and Hessian one by one. Known numbers of the last point are kept, and only a
+  /// new point counts as an evaluation.
   bool Evaluate(const double* y, Want want);
   /// As Evaluate with gradient and Hessian, of this Lagrangian; the Hessian is not cached.
   bool EvaluateLagrangian(const double* y, const Lagrangian& lagrangian);
@@ -39,21 +38,22 @@ class Evaluator {
   /// The same, for products with its rows (View::MultiplyRows and its transpose).
   ViewEvaluation* mutable_last() { return &storage_; }
 
-  /// Tells of one finished iteration: counts it, and records it where Stop asks for a trace. NaN
-  /// where the backend does not know.
+  /// Reports one finished iteration: counts it, and records it where Stop asks for a trace. Pass
+  /// NaN for what the backend does not know.
   void FinishIteration(double step_norm, double gradient_max_norm);
 
-  /// Makes the last evaluated point the one to return, though another violated less, or cost less
-  /// within the tolerance: for a backend that knows it to be the optimum.
+  /// Makes the last evaluated point the one to return, even if another violated less, or cost less
+  /// within the tolerance. For a backend that knows it to be the optimum.
   void PreferLast();
-  /// The same, if it is feasible: another may cost less by what it violates within the tolerance.
+  /// The same, if it is feasible: another may only cost less because of a violation within the
+  /// tolerance.
   void PreferLastIfFeasible();
 
   /// Charges the time from now on to `share`; returns what it was charged to before.
   Share SwitchShare(Share share);
 
-  /// The status that ends the solve now. It is kConverged while the solve may go on, and where the best point is
-  /// near enough to the optimum.
+  /// The status that ends the solve now. It is kConverged while the solve may go on, and where the
+  /// best point is near enough to the optimum.
   SolveStatus stop_status() const { return stop_status_; }
   bool must_stop() const { return near_enough_ || stop_status_ != SolveStatus::kConverged; }
   /// The rule ended the solve.
@@ -64,7 +64,7 @@ class Evaluator {
   void CheckGap();
   /// Asks the budgets and the clock again; the callback is asked once at each evaluation.
   bool CheckStop();
-  /// Asks the clock alone, whatever else is used up: for what comes after a solve. True also where
+  /// Asks the clock alone, whatever other budget is used up: for work after a solve. Also true if
   /// the callback has stopped it.
   bool CheckClock();
 

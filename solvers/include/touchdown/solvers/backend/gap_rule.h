@@ -11,15 +11,15 @@
 
 namespace touchdown::solvers {
 
-/// Ends a solve near enough to the optimum (Stop::gap), by a measure that no backend makes: so different
-/// backends end at points that are equally good. It is what a Newton step of the Lagrangian
-/// promises, plus what rows are off their bounds times their multipliers, which are estimated. That is a bound
-/// where the problem is convex and quadratic. Elsewhere it is an estimate: a stiff term that is hardly touched
-/// hides what is left of the others.
+/// Ends a solve near enough to the optimum (Stop::gap). The measure does not come from a backend,
+/// so different backends end at points that are equally good. It is the gain that a Newton step of
+/// the Lagrangian promises, plus the rows' distances from their bounds times estimated multipliers.
+/// That is a bound if the problem is convex and quadratic. Otherwise it is an estimate: a stiff
+/// term that hardly acts hides the remaining gain of the others.
 ///
-/// A look costs a Hessian and its factor; with rows, up to four of each and those of the estimates. So the next waits
-/// until the cost has fallen by half of what the last found too much, or twice as many points have come. Looks are not
-/// among a solve's evaluations.
+/// A check costs a Hessian and its factor; with rows, up to four of each and those of the
+/// estimates. So the next one waits until the cost falls by half of the excess that the last one
+/// found, or until twice as many points have come. Checks are not among a solve's evaluations.
 class GapRule {
  public:
   /// Allocates for views of this structure. `check` was prepared for it, too, and outlives this.

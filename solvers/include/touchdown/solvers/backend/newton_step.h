@@ -22,17 +22,17 @@ double LargestDiagonal(const BorderedBandMatrix& H);
 /// The largest of all its elements.
 double LargestElement(const BorderedBandMatrix& H);
 
-/// Factors H, shifted until it is positive definite where it is not; a border that alone is
+/// Factors H. If it is not positive definite, it is shifted until it is; a border that alone is
 /// indefinite takes its absolute value. Shifts begin at a small share of `curvature`, or of H's
-/// largest diagonal element where that is 0; with `shift` they begin there instead, and the one
-/// that was taken is told. False if no shift helps. Does not allocate.
+/// largest diagonal element if that is 0. With `shift` they begin at its value, and it receives the
+/// shift that was used. False if no shift helps. Does not allocate.
 bool FactorDefinite(const BorderedBandMatrix& H, BorderedCholesky* factor, double curvature = 0.0,
                     double* shift = nullptr);
 
-/// step = -H^-1 gradient with the factor of H, and a free interval kept in its bounds: where the
-/// step would leave them it ends on the bound, and the other variables take the best step with
-/// that. Returns what it promises: how far the quadratic model falls (half of that at least, where it ends on a
-/// bound). Does not allocate.
+/// step = -H^-1 gradient with the factor of H, and a free interval kept in its bounds. Where the
+/// step would leave them it ends on the bound, and the other variables take the best step for that.
+/// Returns how far the quadratic model falls (at least half of that, where it ends on a bound).
+/// Does not allocate.
 double NewtonStep(const View& view, const double* y, const double* gradient,
                   const BorderedCholesky& factor, double* step);
 

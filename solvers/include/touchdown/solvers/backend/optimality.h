@@ -21,21 +21,22 @@ class OptimalityCheck {
   /// Allocates for views of this structure.
   void Prepare(const View& view);
 
-  /// Looks at y. `told` has the backend's multipliers, or none: where they do not make the point
-  /// stationary, they are estimated from the rows and variables at their bounds. `first_cost`:
-  /// where the solve began. `storage` was sized by the view, and is overwritten. Asks `must_stop`
-  /// before every evaluation, and ends with what it has where the answer is yes. Does not allocate.
+  /// Checks y. `told` has the backend's multipliers, or none. If they do not make the point
+  /// stationary, they are estimated from the rows and variables at their bounds. `first_cost`: the
+  /// cost at the start of the solve. `storage` was sized by the view, and is overwritten. Asks
+  /// `must_stop` before every evaluation; if it says yes, returns what is known so far. Does not
+  /// allocate.
   Optimality Look(const View& view, const Eigen::VectorXd& y, const SolverResult& told,
                   double first_cost, const MustStop& must_stop, ViewEvaluation* storage);
 
-  /// By how much the cost of y, which keeps the rows, may be above the optimum, by a quadratic model: what a Newton
-  /// step of the Lagrangian promises, and what rows that push are off their bounds, with multipliers that are
-  /// estimated. A bound where the problem is convex and quadratic. Infinite where the Lagrangian does not curve
-  /// upwards. Does not allocate.
+  /// An estimate of how far the cost of y, which keeps the rows, may be above the optimum. It comes
+  /// from a quadratic model: the gain of a Newton step of the Lagrangian, plus the distances of
+  /// pushing rows from their bounds times estimated multipliers. It is a bound if the problem is
+  /// convex and quadratic. Infinite where the Lagrangian does not curve upwards. Does not allocate.
   double Above(const View& view, const Eigen::VectorXd& y, ViewEvaluation* storage);
 
-  /// A step along the slopes of the rows, or a part of it, meets them better by half of what they
-  /// promise: where a backend says that they cannot be met, it only gave up.
+  /// Whether a step along the slopes of the rows, or a part of it, meets them better by half of
+  /// what they promise. Then a backend that says they cannot be met only gave up.
   bool CanGetCloser(const View& view, const Eigen::VectorXd& y, const MustStop& must_stop,
                     ViewEvaluation* storage);
 
@@ -43,7 +44,7 @@ class OptimalityCheck {
   /// At which of its bounds a row is, by its multiplier's sign.
   enum class Side : signed char { kLower = -1, kNone = 0, kUpper = 1, kBoth = 2 };
 
-  /// Rows that are to be kept: those of side_, or all that are at a bound.
+  /// Rows that are held: those of side_, or all that are at a bound.
   enum class Kept { kHeld, kAtBounds };
   enum class Metric { kSizes, kDiagonal };
   /// Of a walk from y outwards: each point so many times as far as the one before.

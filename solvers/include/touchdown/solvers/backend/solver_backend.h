@@ -28,7 +28,7 @@ struct Capabilities {
   bool needs_residuals = false;  ///< takes only costs that are sums of squares
 };
 
-/// A solve as it is asked for, before it is made. Valid during the call of a listener.
+/// A requested solve, before it is made. Valid during the call of a listener.
 struct SolveRequest {
   const View& view;
   const WarmStart& start;
@@ -55,8 +55,8 @@ class SolverBackend {
   /// refusal if the backend cannot solve it.
   void Prepare(const View& view);
 
-  /// Hears of every solve before it is made, in the thread that asks for it, and may solve the same view
-  /// with other backends meanwhile. None by default.
+  /// Called before every solve, in the thread that asks for it. It may solve the same view with
+  /// other backends meanwhile. None by default.
   void set_listener(SolveListener listener) { listener_ = std::move(listener); }
 
   /// Sizes a result for solves of this structure: so the first of them does not allocate it.
@@ -74,13 +74,13 @@ class SolverBackend {
 
  private:
   virtual void DoPrepare(const View& view) = 0;
-  /// The bound of GapRule is what the backend's own stop test looks at, with a factor that it has anyway: it
-  /// keeps Stop::gap itself.
+  /// True if the backend's own stop test already looks at GapRule's bound, with a factor that it
+  /// has anyway. It then keeps Stop::gap itself.
   virtual bool measures_gap() const { return false; }
-  /// Runs the solver from `warm`, evaluating only through `evaluator`, and tells it of every
-  /// finished iteration. Sets status (converged is a claim that the base checks), native_status and
-  /// message, multipliers if it has them; charges the time inside its library to Share::kNative.
-  /// The base fills in the rest from the evaluator.
+  /// Runs the solver from `warm`, evaluating only through `evaluator`, and reports every finished
+  /// iteration to it. Sets status (converged is a claim that the base checks), native_status,
+  /// message, and multipliers if it has them. Charges the time inside its library to
+  /// Share::kNative. The base fills in the rest from the evaluator.
   virtual void DoSolve(const View& view, const WarmStart& warm, const Stop& stop,
                        Evaluator* evaluator, SolverResult* result) = 0;
 

@@ -61,9 +61,9 @@ struct WarmStart {
   std::vector<std::vector<double>> multipliers;
 };
 
-/// What the conditions of Karush, Kuhn and Tucker say of a point y. Lengths are measured with each
-/// variable over its own size, 1 + |y_i|; the cost's size is what the solve has gained, or its
-/// slope where that is more. So they do not change with a factor of a row, or with the unit of a
+/// The conditions of Karush, Kuhn and Tucker at a point y. Lengths are measured with each variable
+/// divided by its own size, 1 + |y_i|. The cost's size is the gain of the solve, or its slope if
+/// that is larger. So the results do not change with a factor of a row, or with the unit of a
 /// variable that is large beside 1. A constant in the cost changes `left` alone, and so does a
 /// factor of a cost whose optimum is near 0.
 struct Optimality {
@@ -119,8 +119,8 @@ struct SolverResult : SolverSummary {
   /// [term][row] (TermShape::row) of constraint terms at the backend's last point (x, where it
   /// converged), empty where the backend has none.
   std::vector<std::vector<double>> multipliers;
-  /// Of the variables' bounds, the interval's among them: positive at an upper one, negative at a
-  /// lower one; empty where the backend has none. Of a variable that is fixed it may be 0: some
+  /// Of the variables' bounds, including the interval's: positive at an upper one, negative at a
+  /// lower one. Empty if the backend has none. For a fixed variable it may be 0: some backends
   /// leave it out.
   std::vector<double> bound_multipliers;
   std::string message;                 ///< the backend's own words

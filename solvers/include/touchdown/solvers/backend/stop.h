@@ -23,11 +23,12 @@ struct Stop {
   int max_iterations = 100;
   int max_evaluations = std::numeric_limits<int>::max();
   std::function<bool(const StopQuery&)> callback;  ///< true: stop now
-  /// A point that keeps the rows and is above the optimum by this share of its cost at most ends the solve
-  /// (GapRule), the same for all backends; it is not confirmed. 0: there is no such rule. In [0, 1).
+  /// Ends the solve at a point that keeps the rows and is above the optimum by at most this share
+  /// of its cost (GapRule). The rule is the same for all backends, and such a point is not
+  /// confirmed. 0: there is no such rule. In [0, 1).
   double gap = 0.0;
-  /// Look at the point of a backend that says converged (OptimalityCheck). Without it the word
-  /// stands: for callers that judge the point themselves, as a replanning step does.
+  /// Check the point of a backend that says converged (OptimalityCheck). Otherwise the backend's
+  /// claim stands: for callers that judge the point themselves, as a replanning step does.
   bool confirm = true;
   bool trace = false;   ///< record every iteration in the result (allocates)
   bool shares = false;  ///< time the solve's parts in the result (reads the clock often)

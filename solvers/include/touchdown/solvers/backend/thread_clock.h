@@ -5,7 +5,7 @@
 
 namespace touchdown::solvers {
 
-/// CPU time of the calling thread [s]: what a timing figure means on a shared machine.
+/// CPU time of the calling thread [s]: the meaningful time on a shared machine.
 inline double ThreadCpuSeconds() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);

@@ -9,11 +9,11 @@
 
 namespace touchdown::solvers {
 
-/// The Whitened view: variables z = L^T y, where L L^T is a nominal Hessian of the problem:
-/// Gauss-Newton, every loss with its nominal curvature (loss.h), equality rows with that of their
-/// loss. In z the landing problem's condition number no longer grows with N^6, which is what makes
-/// first-order methods usable on it. A free interval stays a variable of its own: z's last number
-/// is s h, so that its bounds stay bounds.
+/// The Whitened view: variables z = L^T y, where L L^T is a nominal Hessian of the problem. It is a
+/// Gauss-Newton Hessian: every loss has its nominal curvature (loss.h), equality rows that of their
+/// loss. In z the landing problem's condition number no longer grows with N^6, so first-order
+/// methods become usable on it. A free interval stays a variable of its own: z's last number is s
+/// h, so that its bounds stay bounds.
 class Whitening {
  public:
   /// Allocates for views of this structure.

@@ -5,9 +5,9 @@
 
 namespace touchdown::solvers {
 
-/// Symmetric matrix of `blocks` x `blocks` blocks of d x d scalars, zero beyond `half_bandwidth`
-/// block diagonals, with at most one border row (the knot interval): an arrowhead. Only the upper
-/// blocks (i, i + k), k = 0..half_bandwidth, are stored, each row-major.
+/// Symmetric arrowhead matrix of `blocks` x `blocks` blocks of d x d scalars. It is zero beyond
+/// `half_bandwidth` block diagonals, except for at most one border row (the knot interval). Only
+/// the upper blocks (i, i + k), k = 0..half_bandwidth, are stored, each row-major.
 class BorderedBandMatrix {
  public:
   BorderedBandMatrix() = default;

@@ -7,10 +7,10 @@
 
 namespace touchdown::solvers {
 
-/// Cholesky factor of a BorderedBandMatrix A = L L^T, L lower triangular with A's band and border:
+/// Cholesky factor of a BorderedBandMatrix A = L L^T. L is lower triangular, of the same shape.
 ///   A = [B b; b^T c],   B = L_B L_B^T,   L = [L_B 0; (L_B^-1 b)^T s],   s^2 = c - |L_B^-1 b|^2.
-/// Blocks of 3 x 3 are factored by vectorised kernels; others as a scalar band, in time linear in
-/// the scalars and quadratic in the band.
+/// Vectorised kernels factor blocks of 3 x 3. Other blocks are factored as a scalar band, in time
+/// linear in the scalars and quadratic in the band.
 class BorderedCholesky {
  public:
   /// What a factorisation found.

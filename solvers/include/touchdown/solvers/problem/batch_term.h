@@ -25,8 +25,8 @@ enum class OwnSlopes {
   kAll,     ///< and du_dh by the interval, with the share of t = t0 + first_block h
 };
 
-/// An inner map that is asked for all windows at once: for languages in which a call takes longer than what is
-/// computed in it.
+/// An inner map that is asked for all windows at once: for languages in which a call takes longer
+/// than the computation inside it.
 class BatchMap {
  public:
   virtual ~BatchMap() = default;
@@ -53,11 +53,12 @@ struct BatchShape {
   double scale = 1.0;          ///< change of a block's number over which u is smooth, > 0
 };
 
-/// A term of a BatchMap. What the map has not is found by central differences, all windows and variables in a call, and
-/// a few for the interval. Of a u that is smooth over `scale`: slopes to about 1e-12 of u over scale, curvatures to 1e-7
-/// of u over scale^2 from values, to 1e-9 from the map's own slopes. Where a moved copy is not finite, slopes are
-/// found from the other side, and the curvature is left out.
-/// Allocates at every evaluation.
+/// A term of a BatchMap. Derivatives that the map does not give are found by central differences:
+/// all windows and variables in one call, and a few calls for the interval. For a u that is smooth
+/// over `scale`, slopes are good to about 1e-12 of u over scale. Curvatures are good to 1e-7 of u
+/// over scale^2 from values, to 1e-9 from the map's own slopes. If a moved copy is not finite,
+/// slopes are found from the other side, and the curvature is left out. Allocates at every
+/// evaluation.
 class BatchTerm : public Term {
  public:
   /// Throws std::invalid_argument on a size out of range or without a map.

@@ -167,9 +167,9 @@ struct Dual : DualFunctions<Dual<n>> {
   }
 };
 
-/// Value, gradient and Hessian by n variables. Most numbers of a formula depend on few of these:
-/// two sets of bits tell by which of them a number has a slope, and between which it curves; what
-/// is outside of these is not stored.
+/// Value, gradient and Hessian by n variables. Most numbers of a formula depend on few of these.
+/// Two sets of bits say which variables a number has a slope by, and between which it curves. Only
+/// these entries are stored.
 template <int n>
 struct SecondDual : DualFunctions<SecondDual<n>> {
   static_assert(n <= 64, "more variables than a SecondDual has bits: write the curvature by hand");

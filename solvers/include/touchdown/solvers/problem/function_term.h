@@ -25,8 +25,9 @@ struct FunctionShape {
 ///
 ///   [](const auto* q, auto* u) { u[0] = q[0] * q[1] - 1.0; }
 ///
-/// on the w d scalars of a window, and is differentiated twice, exactly. One that begins with `int window` is told
-/// which window it sees, from 0. It does not see the interval. Some ten times slower than a WindowTerm of the same size.
+/// on the w d scalars of a window, and is differentiated twice, exactly. If it begins with `int window`, it gets the
+/// number of its window, from 0. It does not see the interval. About ten times slower than a WindowTerm of the same
+/// size.
 class FunctionTerm : public Term {
  public:
   static constexpr int kMostVariables = 32;  ///< w d

@@ -54,8 +54,8 @@ class SquareLoss {
 };
 
 /// The C2 cubic-quadratic hinge of EGO-Planner (Zhou et al. 2020, eq. 5) on c = max(0, u):
-/// rho = w c^3 for c <= s and w (3 s c^2 - 3 s^2 c + s^3) beyond; zero for u <= 0. Nondecreasing
-/// and convex, so that a convex inner map stays convex.
+/// rho = w c^3 for c <= s, rho = w (3 s c^2 - 3 s^2 c + s^3) beyond. It is nondecreasing and
+/// convex, so that a convex inner map stays convex.
 class HingeLoss {
  public:
   static constexpr bool kQuadratic = false;

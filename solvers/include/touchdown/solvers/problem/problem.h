@@ -40,9 +40,9 @@ struct Evaluation {
   std::vector<double> cost_by_term;  ///< [term]; 0 for constraints
   std::vector<TermBlock> terms;      ///< [term]
 
-  /// Tells that parameters stay what they are from here on, so that what does not depend on x is
-  /// computed once: windows, Jacobians of affine maps, the Hessian of quadratic terms. Without it
-  /// everything is computed at every call.
+  /// Declares that parameters stay as they are from now on. Numbers that do not depend on x are
+  /// then computed once: windows, Jacobians of affine maps, the Hessian of quadratic terms. Without
+  /// it everything is computed at every call.
   void HoldParameters();
 
  private:
@@ -74,10 +74,10 @@ class Problem {
   void AddTerm(std::shared_ptr<const Term> term, Role role);
 
   /// Bounds lower <= x <= upper of the blocks, N x d numbers each, infinite (or beyond kNoBound)
-  /// where there is none: for backends that keep them without rows (Capabilities). Throws
+  /// where there is none. For backends that keep them without rows (Capabilities). Throws
   /// std::invalid_argument on another size, or where they are not lower <= upper.
   void SetBounds(std::vector<double> lower, std::vector<double> upper);
-  /// Has bounds but for the interval's.
+  /// Has bounds other than the interval's.
   bool bounded() const { return !lower_.empty(); }
   double lower(int i) const { return bounded() ? lower_[i] : -kInfinity; }
   double upper(int i) const { return bounded() ? upper_[i] : kInfinity; }

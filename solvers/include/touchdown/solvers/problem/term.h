@@ -25,8 +25,8 @@ inline constexpr int kMaxWindow = 6;
 /// Whether a term is part of the objective or a set of constraint rows.
 enum class Role { kCost, kConstraint };
 
-/// A term of the objective or a set of constraint rows: sum over windows k and components c of
-/// rho(u_c(q_k .. q_{k+w-1}, h, t_k)), t_k = t0 + k h. Or, as rows: lo <= u_c <= hi.
+/// A term of the objective or a set of constraint rows. The cost is the sum over windows k and
+/// components c of rho(u_c(q_k .. q_{k+w-1}, h, t_k)), t_k = t0 + k h. Rows are lo <= u_c <= hi.
 struct TermShape {
   int block_size = 3;         ///< scalars in a block, d
   int window = 1;             ///< consecutive blocks in a window, w <= kMaxWindow
@@ -61,8 +61,8 @@ struct Want {
   bool residual = false;  ///< r and dr of the cost terms, for least-squares backends
 };
 
-/// What the rows of one constraint term count for in a Lagrangian: sum of multiplier x u + weight x
-/// u^2 / 2 with the square's curvature weight x du du^T alone. Arrays over [row]; null: zero.
+/// The share of one constraint term's rows in a Lagrangian: sum of multiplier x u + weight x u^2 /
+/// 2. Of the square's curvature only weight x du du^T is used. Arrays over [row]; null: zero.
 struct RowWeights {
   const double* multiplier = nullptr;
   const double* weight = nullptr;
@@ -74,8 +74,8 @@ struct TermRequest {
   Role role = Role::kCost;
   double objective_factor = 1.0;  ///< of a cost in the Hessian
   RowWeights rows;                ///< of a constraint
-  /// Instead of its own second derivative every loss adds its nominal one, and no inner map its
-  /// curvature: the metric of whitening.h.
+  /// Every loss uses its nominal curvature instead of its own second derivative, and inner maps add
+  /// no curvature: the metric of whitening.h.
   bool nominal_curvature = false;
   bool jacobian_known = false;  ///< du in the block is still right: u is affine, h the same
   bool hessian_known = false;   ///< its Hessian is in the sum already
@@ -89,8 +89,8 @@ struct TermSums {
   BorderedBandMatrix* hessian = nullptr;
 };
 
-/// What one term hands to adapters and views: plain arrays over the rows of its active windows, sized
-/// once. The rows of a window, one for each output, follow each other (TermShape::row).
+/// What one term hands to adapters and views: plain arrays over the rows of its active windows,
+/// sized once. The rows of a window are consecutive, one for each output (TermShape::row).
 struct TermBlock {
   int windows = 0;                       ///< active now, <= max_windows
   std::vector<int> first_block;          ///< [window]

@@ -33,8 +33,8 @@ struct ViewEvaluation {
 /// A Problem in the variables that a backend works on: y = the reduced blocks, then h if it is
 /// free. With the identity lift this is the Full view; with the elimination of
 /// planning/boundary_lift the Reduced one. The problem and the lift's offset must outlive the view
-/// and hold still while a solve runs. Terms and bounds that the problem gets later count too: what was sized before
-/// is to be sized again.
+/// and must not change during a solve. Terms and bounds that are added to the problem later count
+/// too: storage that was sized before must be sized again.
 class View {
  public:
   /// Throws std::invalid_argument if the lift does not fit the problem.
@@ -57,8 +57,8 @@ class View {
   bool bounded() const { return problem_->bounded(); }
   /// Variables but the interval have bounds, or there are constraint rows.
   bool constrained() const;
-  /// Bounds of variable i, the interval among them; but for that one only of use where the view is
-  /// the identity.
+  /// Bounds of variable i, including the interval. Except for the interval they are only useful if
+  /// the view is the identity.
   double lower(int i) const;
   double upper(int i) const;
   /// Moves what is beyond its bounds onto them. Does not allocate.
@@ -68,13 +68,13 @@ class View {
   /// Allocates what Evaluate needs.
   void Resize(ViewEvaluation* evaluation) const;
 
-  /// Evaluates at y; see Problem::Evaluate. Does not allocate. False, and says why in `full.failure`, where the
-  /// evaluation has not the sizes of this view and its problem.
+  /// Evaluates at y; see Problem::Evaluate. Does not allocate. Returns false, and says why in
+  /// `full.failure`, if the evaluation does not have the sizes of this view and its problem.
   bool Evaluate(const double* y, Want want, const Lagrangian& lagrangian,
                 ViewEvaluation* evaluation) const noexcept;
 
-  /// out = J^T w over all constraint rows at the last evaluation (with gradients): what multipliers
-  /// or right-hand sides `weights[term][row]` are worth in the view's variables.
+  /// out = J^T w over all constraint rows at the last evaluation (with gradients). It maps
+  /// multipliers or right-hand sides `weights[term][row]` to the view's variables.
   void MultiplyRowsTransposed(const double* const* weights, ViewEvaluation* evaluation,
                               double* out) const;
   /// out[term][row] = J dy over all constraint rows, at the last evaluation.
@@ -89,8 +89,8 @@ class View {
   /// The distinct reduced blocks that a window reaches, in order; at most `window` of them.
   /// Returns their number.
   int WindowBlocks(int first_block, int window, int* reduced) const;
-  /// `scale` times the derivative of one output of a window, `du` in its full blocks, by the
-  /// reduced blocks that WindowBlocks lists: `out` has d numbers for each.
+  /// `scale` times the derivative of one output of a window by the reduced blocks that WindowBlocks
+  /// lists. `du` is the derivative by its full blocks; `out` has d numbers for each reduced block.
   void WindowJacobian(const double* du, int first_block, int window, double scale,
                       double* out) const;
   /// Its derivative, unscaled, with respect to h, the moving offset included.

@@ -7,9 +7,8 @@
 
 namespace touchdown::solvers {
 
-/// What storage, sparsity or a refusal depends on: sizes, terms, their rows' bounds, which variables have
-/// bounds. A view whose parameters alone differ is of the same structure. None is empty by default, and then no
-/// view is of it.
+/// What storage, sparsity or a refusal depends on: sizes, terms, their rows' bounds, which variables have bounds.
+/// Views that only differ in parameters have the same structure. By default it is empty, and no view has it.
 class ViewStructure {
  public:
   ViewStructure() = default;

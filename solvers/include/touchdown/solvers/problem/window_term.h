@@ -22,11 +22,11 @@
 //     void Curvature(int k, const double* q, double h, double t, bool free_interval,
 //                    const double* m, double* d2) const;
 //
-// twice: it adds sum_c m_c d2u_c to d2, a row-major (v + 1) x (v + 1) matrix with h last, of which
-// the blocks on and above the diagonal are read, those on it whole, and h's column if it is free.
-// Without it a SecondDual does the same, some times slower, for w d < 64. A map whose output c
-// depends on coordinate c % d of the blocks alone says so with kSeparable = true and has its
-// Hessian summed coordinate by coordinate. Instantiate WindowTerm in one .cc only.
+// for second derivatives. It adds sum_c m_c d2u_c to d2, a row-major (v + 1) x (v + 1) matrix with
+// h last. The blocks on and above the diagonal are read, those on it whole, and h's column if it is
+// free. Without it a SecondDual does the same, a few times slower, for w d < 64. If output c of a
+// map depends on coordinate c % d of the blocks alone, the map sets kSeparable = true. Its Hessian
+// is then summed coordinate by coordinate. Instantiate WindowTerm in one .cc only.
 #pragma once
 
 #include <stdexcept>

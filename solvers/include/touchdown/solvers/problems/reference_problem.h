@@ -16,7 +16,7 @@
 
 namespace touchdown::solvers {
 
-/// A problem whose optimum is known: what a backend returns can be judged from outside.
+/// A problem whose optimum is known, so that a backend's result can be judged from outside.
 struct ReferenceProblem {
   std::string name;
   std::shared_ptr<const Problem> problem;
@@ -24,8 +24,8 @@ struct ReferenceProblem {
   double cost = 0.0;           ///< at the best local optimum that is known
   std::vector<double> others;  ///< costs at other local optima
 
-  /// How far a cost is from that of the nearest known optimum, share of it or of 1 where it is
-  /// less.
+  /// Distance of a cost from that of the nearest known optimum, as a share of it, or of 1 where it
+  /// is less.
   double Off(double at) const {
     double off = std::abs(at - cost) / std::max(1.0, std::abs(cost));
     for (const double other : others) {
