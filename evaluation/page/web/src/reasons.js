@@ -9,7 +9,7 @@ export const REASONS = {
   pad_lost: "the pad was not known well enough for too long",
   tags_lost: "the landing condition failed for too long, or too close to the deck",
   error_too_large: "the horizontal distance to the pad is too large",
-  too_fast: "the pad does not move as predicted",
+  too_fast: "too fast relative to the pad",
   gust: "the wind tilts the vehicle too far",
   plan_failed: "there was no new plan for too long",
   no_contact: "contact did not come in time",
