@@ -89,7 +89,7 @@ class Search {
         space_(space),
         options_(options) {}
 
-  std::optional<TimedWay> Run() {
+  std::optional<TimedMotion> Run() {
     const std::vector<Vector3d> accelerations =
         Accelerations(options_.share * limits_.acceleration);
     Push({start_.p, start_.v, 0.0, 0.0, -1});
@@ -126,7 +126,7 @@ class Search {
   }
 
   /// A quintic to the end, for a few arrivals.
-  std::optional<TimedWay> Shoot(int at) const {
+  std::optional<TimedMotion> Shoot(int at) const {
     const Node& node = nodes_[static_cast<std::size_t>(at)];
     const double distance = (EndAt(node.t).p - node.p).norm();
     if (distance > kShotFrom) return std::nullopt;
@@ -145,12 +145,12 @@ class Search {
     return std::nullopt;
   }
 
-  TimedWay WayTo(int at, const planning::UniformBspline& last) const {
+  TimedMotion WayTo(int at, const planning::UniformBspline& last) const {
     constexpr int kPlaces = 6;  // of a piece
     std::vector<int> chain;
     for (int i = at; i >= 0; i = nodes_[static_cast<std::size_t>(i)].parent) chain.push_back(i);
     std::reverse(chain.begin(), chain.end());
-    TimedWay way;
+    TimedMotion way;
     for (std::size_t i = 0; i + 1 < chain.size(); ++i) {
       const Node& a = nodes_[static_cast<std::size_t>(chain[i])];
       const Node& b = nodes_[static_cast<std::size_t>(chain[i + 1])];
@@ -180,12 +180,12 @@ class Search {
 
 }  // namespace
 
-std::optional<TimedWay> SearchMotion(const planning::SplineState& start,
-                                     const estimation::PadPrediction& pad,
-                                     const planning::EndpointTarget& target,
-                                     const planning::Limits& limits,
-                                     const planning::FreeSpace& space,
-                                     const MotionSearchOptions& options) {
+std::optional<TimedMotion> SearchMotion(const planning::SplineState& start,
+                                        const estimation::PadPrediction& pad,
+                                        const planning::EndpointTarget& target,
+                                        const planning::Limits& limits,
+                                        const planning::FreeSpace& space,
+                                        const MotionSearchOptions& options) {
   return Search(start, pad, target, limits, space, options).Run();
 }
 

@@ -19,7 +19,7 @@ struct TimedPlace {
   double t = 0.0;                               ///< after the start [s]
   Eigen::Vector3d p = Eigen::Vector3d::Zero();  ///< in W [m]
 };
-using TimedWay = std::vector<TimedPlace>;
+using TimedMotion = std::vector<TimedPlace>;
 
 struct MotionSearchOptions {
   double share = 0.8;  ///< of the acceleration limit that is used
@@ -29,11 +29,11 @@ struct MotionSearchOptions {
 
 /// A way of pieces of constant acceleration that stays in free cells and below the limits. It ends with a quintic in
 /// the end's state at its arrival. Greedy: not the earliest. Empty: none was found. Allocates.
-std::optional<TimedWay> SearchMotion(const planning::SplineState& start,
-                                     const estimation::PadPrediction& pad,
-                                     const planning::EndpointTarget& target,
-                                     const planning::Limits& limits,
-                                     const planning::FreeSpace& space,
-                                     const MotionSearchOptions& options);
+std::optional<TimedMotion> SearchMotion(const planning::SplineState& start,
+                                        const estimation::PadPrediction& pad,
+                                        const planning::EndpointTarget& target,
+                                        const planning::Limits& limits,
+                                        const planning::FreeSpace& space,
+                                        const MotionSearchOptions& options);
 
 }  // namespace touchdown::evaluation

@@ -14,7 +14,8 @@ namespace touchdown::evaluation {
 
 /// Figures of the safety rule in a flight, until first contact (docs/safety.md).
 struct SafetyFigures {
-  int uncertified_steps = 0;  ///< after which something flies that is not part of a proven pair
+  int uncertified_steps =
+      0;  ///< after which something flies that is not part of a proven flight pair
   int escaping_steps =
       0;  ///< whose pair starts with the hull in cells that are not observed free, or leads out
           ///< of a zone that blocks

@@ -53,8 +53,9 @@ planning::ArrivalMode ArrivalOf(const StudyArguments& arguments) {
 
 void RunSafety(const StudyArguments& arguments, const Registries& registries,
                std::vector<ReplanStudyPart>* parts) {
-  const auto verdict = [book = StandardOracleBook()](const SceneOptions& scenes, int index) {
-    return book.Find(scenes, index);
+  const auto verdict = [verdicts = StandardOracleVerdicts()](const SceneOptions& scenes,
+                                                             int index) {
+    return verdicts.Find(scenes, index);
   };
   for (const std::string& set : arguments.sets) {
     for (const std::string& kind : arguments.kinds) {
@@ -264,11 +265,11 @@ int Study(StudyArguments arguments, const Registries& registries) {
   const auto write = [&](const std::string& path) { WriteReplanStudy(path, parts, machine); };
   if (!arguments.db.empty()) write(arguments.db);
   if (!arguments.verdicts.empty()) {
-    OracleVerdicts book;
+    OracleVerdicts verdicts;
     for (const ReplanStudyPart& part : parts) {
-      if (part.varied.empty()) book.Add(part.options.scenes, part.rows);
+      if (part.varied.empty()) verdicts.Add(part.options.scenes, part.rows);
     }
-    book.Write(arguments.verdicts);
+    verdicts.Write(arguments.verdicts);
   }
   if (!arguments.picture.empty()) DrawFrom(arguments.db, arguments.picture, write, DrawGrowth);
   return AllSafe(parts) ? kDone : kFellShort;

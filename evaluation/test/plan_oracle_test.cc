@@ -108,9 +108,9 @@ TEST_F(OracleVerdictsFile, ReadsBackWhatWasWritten) {
   rows[1].oracle = OracleVerdict{true, "motion"};
   rows[2].oracle = OracleVerdict{false, "", true};
   rows[3].oracle = OracleVerdict{false, ""};
-  OracleVerdicts book;
-  book.Add(Of("slits", "D"), rows);
-  book.Write(path_);
+  OracleVerdicts verdicts;
+  verdicts.Add(Of("slits", "D"), rows);
+  verdicts.Write(path_);
   const OracleVerdicts read(path_);
   for (int i = 0; i < 4; ++i) {
     const auto verdict = read.Find(Of("slits", "D"), i);
@@ -130,7 +130,7 @@ TEST_F(OracleVerdictsFile, IsRefusedWithItsLine) {
   const auto refused = [&](const std::string& line) {
     std::ofstream(path_) << "set,kind,seed,verdicts\n" << line << '\n';
     try {
-      OracleVerdicts book(path_);
+      OracleVerdicts verdicts(path_);
     } catch (const BadInput& error) {
       return std::string(error.what()).find(":2:") != std::string::npos;
     }
@@ -144,12 +144,12 @@ TEST_F(OracleVerdictsFile, IsRefusedWithItsLine) {
 
 // The shipped verdicts are those of the oracle for the scenes that this build draws.
 TEST(OracleVerdicts, TheShippedOneSaysWhatTheOracleDoes) {
-  const OracleVerdicts book = StandardOracleBook();
+  const OracleVerdicts verdicts = StandardOracleVerdicts();
   for (const std::string& set : SceneSetNames()) {
     const SceneOptions options = Of(set, "C");
     PlanOracle oracle(SceneReplannerOptions(options, Base()), solvers::StandardBackends());
     for (const int index : {0, 299}) {
-      const auto verdict = book.Find(options, index);
+      const auto verdict = verdicts.Find(options, index);
       ASSERT_TRUE(verdict) << set;
       const OracleAnswer answer = oracle.Ask(DrawReplanScene(options, index));
       EXPECT_EQ(verdict->found, answer.plan.has_value()) << set << ' ' << index;

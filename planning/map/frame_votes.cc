@@ -44,16 +44,16 @@ FrameVotes::FrameVotes(const Eigen::Vector3i& size_log2)
   hits_.reserve(1 << 15);
 }
 
-void FrameVotes::Begin(const Eigen::Vector3d& eye) {
-  eye_ = eye;
-  first_ = CellIn(eye);
+void FrameVotes::Begin(const Eigen::Vector3d& p_WC) {
+  p_WC_ = p_WC;
+  first_ = CellIn(p_WC);
   low_ = first_;
   high_ = first_ + Eigen::Vector3i::Ones();
   hits_.clear();
 }
 
 inline FrameVotes::Track FrameVotes::MakeTrack(const Ray& ray, int axis, int minor) const {
-  const double at = eye_[minor] + ray.along[minor] * ray.first_cross[axis];
+  const double at = p_WC_[minor] + ray.along[minor] * ray.first_cross[axis];
   const double by = ray.along[minor] * ray.per_cell[axis];
   const std::int64_t steps = ray.crossings[axis] - 1;
   // Without a step the ray may be so steep that none could be held.
@@ -103,18 +103,18 @@ inline void FrameVotes::MissBehindFaces(const Ray& ray) {
 
 void FrameVotes::AddRay(const Eigen::Vector3d& end) {
   Ray ray;
-  ray.along = end - eye_;
+  ray.along = end - p_WC_;
   double leaves = 2.0;  // ray parameter at which it leaves the window; the end is at 1
   for (int c = 0; c < 3; ++c) {
     const bool up = ray.along[c] >= 0.0;
     const double inverse = 1.0 / ray.along[c];  // infinite along the other axes' planes
     ray.step[c] = up ? 1 : -1;
     ray.per_cell[c] = std::abs(inverse);
-    ray.first_cross[c] = (up ? first_[c] + 1 - eye_[c] : eye_[c] - first_[c]) * ray.per_cell[c];
-    leaves = std::min(leaves, (up ? size_[c] - eye_[c] : eye_[c]) * ray.per_cell[c]);
+    ray.first_cross[c] = (up ? first_[c] + 1 - p_WC_[c] : p_WC_[c] - first_[c]) * ray.per_cell[c];
+    leaves = std::min(leaves, (up ? size_[c] - p_WC_[c] : p_WC_[c]) * ray.per_cell[c]);
   }
   const bool ends_within = leaves > 1.0;
-  const Eigen::Vector3d stop = ends_within ? end : Eigen::Vector3d(eye_ + leaves * ray.along);
+  const Eigen::Vector3d stop = ends_within ? end : Eigen::Vector3d(p_WC_ + leaves * ray.along);
   ray.last = CellIn(stop);
   ray.crossings = (ray.last - first_).cwiseAbs();
   low_ = low_.cwiseMin(ray.last);
@@ -131,7 +131,7 @@ void FrameVotes::AddRay(const Eigen::Vector3d& end) {
         final_axis = c;
       }
     }
-    if (final_axis < 0) return;  // it ends in the eye's own cell
+    if (final_axis < 0) return;  // it ends in the camera's cell
     --ray.crossings[final_axis];
   }
   votes_[Address(first_)] = kMiss;

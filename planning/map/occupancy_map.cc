@@ -193,7 +193,8 @@ void OccupancyMap::Integrate(const estimation::DepthFrame& frame, const PadOutli
       const bool returned = along != std::numeric_limits<double>::infinity();
       if (!returned) along = frame.max_range / per_depth;
       const double range = along * per_depth;
-      if (!(range > 0.0 && range >= options_.min_ray && range <= farthest)) continue;  // it says nothing
+      if (!(range > 0.0 && range >= options_.min_ray && range <= farthest))
+        continue;  // it says nothing
       const Eigen::Vector3d ray_W = row_W + frame.R_WC.col(0) * right;
       const double freed = std::min(returned ? along * short_of_return : along, resolved);
       votes_.AddRay(in_window(frame.p_WC + ray_W * freed));
@@ -210,7 +211,7 @@ void OccupancyMap::Integrate(const estimation::DepthFrame& frame, const PadOutli
   ApplyMisses(frame.p_WC);
 }
 
-void OccupancyMap::ApplyMisses(const Eigen::Vector3d& eye) {
+void OccupancyMap::ApplyMisses(const Eigen::Vector3d& p_WC) {
   ForEachStretch({origin_ + votes_.low(), origin_ + votes_.high()}, [&](const Stretch& s) {
     // Nearly all votes say again that free space is free.
     std::uint64_t misses =
@@ -220,7 +221,7 @@ void OccupancyMap::ApplyMisses(const Eigen::Vector3d& eye) {
       const int i = std::countr_zero(misses);
       Cell& cell = cells_[s.address + static_cast<std::size_t>(i)];
       if (cell.log_odds >= 0) {
-        ApplyMissToHit(s.first + i * CellIndex::UnitX(), eye);
+        ApplyMissToHit(s.first + i * CellIndex::UnitX(), p_WC);
         continue;
       }
       const std::uint64_t bit = std::uint64_t{1} << i;
@@ -235,16 +236,16 @@ void OccupancyMap::ApplyMisses(const Eigen::Vector3d& eye) {
   });
 }
 
-int OccupancyMap::RangeOf(const CellIndex& cell, const Eigen::Vector3d& eye) const {
-  const double steps = (CentreOf(cell) - eye).norm() / kRangeStep;
+int OccupancyMap::RangeOf(const CellIndex& cell, const Eigen::Vector3d& p_WC) const {
+  const double steps = (CentreOf(cell) - p_WC).norm() / kRangeStep;
   return std::min(static_cast<int>(steps), kFarthest);
 }
 
-void OccupancyMap::ApplyMissToHit(const CellIndex& cell, const Eigen::Vector3d& eye) {
+void OccupancyMap::ApplyMissToHit(const CellIndex& cell, const Eigen::Vector3d& p_WC) {
   Cell value = cells_[Address(cell)];
   // What may have been the pad has moved on with it. Any other hit needs a better look.
-  const bool better = value.doubtful || RangeOf(cell, eye) < value.hit_range ||
-                      (CentreOf(cell) - eye).norm() <= sharp_;
+  const bool better = value.doubtful || RangeOf(cell, p_WC) < value.hit_range ||
+                      (CentreOf(cell) - p_WC).norm() <= sharp_;
   if (!better) return;
   value.log_odds = after_miss_[static_cast<std::uint8_t>(value.log_odds)];
   if (value.log_odds < 0) value.doubtful = false;
@@ -252,8 +253,8 @@ void OccupancyMap::ApplyMissToHit(const CellIndex& cell, const Eigen::Vector3d& 
   SetBit(cell, value.log_odds < 0, &free_);
 }
 
-void OccupancyMap::ApplyReturn(std::uint8_t vote, const CellIndex& cell, const Eigen::Vector3d& eye,
-                               double t) {
+void OccupancyMap::ApplyReturn(std::uint8_t vote, const CellIndex& cell,
+                               const Eigen::Vector3d& p_WC, double t) {
   Cell value = cells_[Address(cell)];
   SetBit(cell, false, &free_);
   if (vote == FrameVotes::kPad) {
@@ -263,7 +264,7 @@ void OccupancyMap::ApplyReturn(std::uint8_t vote, const CellIndex& cell, const E
   }
   const bool firm = Blocks(value);
   if (vote == FrameVotes::kDoubt && firm) return;
-  const int range = RangeOf(cell, eye);
+  const int range = RangeOf(cell, p_WC);
   value.hit_range = static_cast<std::uint8_t>(
       (value.log_odds >= 0 ? std::min<int>(value.hit_range, range) : range) & kFarthest);
   value.doubtful = vote == FrameVotes::kDoubt;
@@ -273,7 +274,7 @@ void OccupancyMap::ApplyReturn(std::uint8_t vote, const CellIndex& cell, const E
   if (doubts_.size() == doubts_.capacity()) return MakeCertain(cell, false);  // no room: it blocks
   // The cell's centre will represent the return, which was anywhere in it.
   const double offset = 0.5 * options_.resolution;
-  doubts_.push_back({t, cell, ToleranceAt((CentreOf(cell) - eye).norm()) + offset});
+  doubts_.push_back({t, cell, ToleranceAt((CentreOf(cell) - p_WC).norm()) + offset});
 }
 
 void OccupancyMap::MakeCertain(const CellIndex& cell, bool explained) {

@@ -14,8 +14,7 @@ std::span<const StepConstant> StepConstantTable() {
   static constexpr std::array kTable = {
       StepConstant{"heuristic_weight", &C::heuristic_weight, "",
                    "weight of the estimate in the search for a path", 1.0},
-      StepConstant{"way_tight_cost", &C::way_tight_cost, "m/m",
-                   "cost of a metre next to an obstacle", 1.0},
+      StepConstant{"tight_cost", &C::tight_cost, "m/m", "cost of a metre next to an obstacle", 1.0},
       StepConstant{
           "detour_longer", &C::detour_longer, "m",
           "a detour of the committed curve is longer than the straight line by this at most"},

@@ -6,7 +6,7 @@
 
 namespace touchdown::planning {
 
-/// What is flown where no new plan could be certified: a proven pair, except RisesUnproven. Each call fills curve,
+/// What is flown where no new plan could be certified: a proven flight pair, except RisesUnproven. Each call fills curve,
 /// stop and certificate of `result` if it succeeds. Does not allocate.
 class Fallback {
  public:

@@ -125,7 +125,7 @@ void PairBinder::Remember(const UniformBspline& curve, BoundParts* parts) const 
   }
 }
 
-void PairBinder::Lead(const TimedWay& way, const BoundParts& more) {
+void PairBinder::Lead(const TimedPath& way, const BoundParts& more) {
   const int n = static_cast<int>(bound_.size());
   const double interval = (way.t_end() - way.t0()) / (n - kFirstFree);
   const auto time_of = [&](int i) { return way.t0() + (i - 1) * interval; };

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "planning/search/corridor.h"
-#include "planning/search/timed_way.h"
+#include "planning/search/timed_path.h"
 #include "touchdown/planning/certify/curve_check.h"
 #include "touchdown/planning/problem/bound_part.h"
 #include "touchdown/planning/problem/landing_problem.h"
@@ -30,7 +30,7 @@ class PairBinder {
   /// The first round of a way. It binds the parts of the way that have to be bound, what is beside them, and `more`,
   /// in the time of the curve that the way follows. The control points are wanted on the way, in even steps of its
   /// time.
-  void Lead(const TimedWay& way, const BoundParts& more);
+  void Lead(const TimedPath& way, const BoundParts& more);
 
   /// A later round: the control points are wanted on this curve.
   void Start(const UniformBspline& curve);

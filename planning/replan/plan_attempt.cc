@@ -2,7 +2,7 @@
 // One attempt at a plan, top to bottom:
 //   Pose    sets the problem's ends, or refuses them;
 //   Solve   without obstacles, which nearly always shows the plan's shape;
-//   KeepWay, LayWay  lay a way past all that blocks that curve;
+//   KeepPath, LayPath  lay a way past all that blocks that curve;
 //   Follow  binds control points to free space along the way, solves, binds what is still blocked,
 //           until the whole curve is clear;
 //   Finish  certifies it.
@@ -138,7 +138,7 @@ ReplanReason PlanAttempt::FindAnew(const AttemptRequest& request, const UniformB
     reason = Refine(request, &posed, &best_, result);
     if (reason != ReplanReason::kNone) return reason;
   }
-  if (!best_.blocked.empty() && leads_around) return TryWays(request, &posed, result);
+  if (!best_.blocked.empty() && leads_around) return TryPaths(request, &posed, result);
   return KeepLimits(request, posed, &best_, result);
 }
 
@@ -201,7 +201,7 @@ ReplanReason PlanAttempt::Refine(const AttemptRequest& request, Posed* posed, Ca
 }
 
 /// The committed way on the present map, once an attempt.
-void PlanAttempt::KeepWay(const AttemptRequest& request, ReplanResult* result) {
+void PlanAttempt::KeepPath(const AttemptRequest& request, ReplanResult* result) {
   if (std::exchange(kept_asked_, true)) return;
   if (!request.starts_on_previous || request.previous->t_end() <= request.t0) return;
   StageTimer timer(&result->times.search, StageTimer::kWhileLogged);
@@ -209,8 +209,8 @@ void PlanAttempt::KeepWay(const AttemptRequest& request, ReplanResult* result) {
 }
 
 /// A new way past all of `span`.
-ReplanReason PlanAttempt::LayWay(const AttemptRequest& request, const BlockedRun& span,
-                                 double max_cost, ReplanResult* result) {
+ReplanReason PlanAttempt::LayPath(const AttemptRequest& request, const BlockedRun& span,
+                                  double max_cost, ReplanResult* result) {
   StageTimer timer(&result->times.search, StageTimer::kWhileLogged);
   // A way for which no budget to follow it is left would only be found again.
   const int reserve = WorkBudget::kLeastEvaluations * WorkBudget::kSegment * segments_;
@@ -219,7 +219,7 @@ ReplanReason PlanAttempt::LayWay(const AttemptRequest& request, const BlockedRun
   // The search moves a blocked start to the nearest free cell: a start in the inflated zone is led out.
   if (span.at_start && status == SearchStatus::kEndsBlocked) return ReplanReason::kStartBlocked;
   // What is left for other ways is less than the budget.
-  if (status == SearchStatus::kExpansionLimit && finder_.ways_closed() == 0) spent_ = true;
+  if (status == SearchStatus::kExpansionLimit && finder_.paths_closed() == 0) spent_ = true;
   if (status == SearchStatus::kFound) result->guide_paths.Add(finder_.detour());
   return way_.known() ? ReplanReason::kNone : ReplanReason::kSearchFailed;
 }
@@ -227,7 +227,7 @@ ReplanReason PlanAttempt::LayWay(const AttemptRequest& request, const BlockedRun
 /// The committed plan is the best known. Its rest, bound as before, but to the present map, takes one solve while it
 /// holds. New obstacles on it need further rounds.
 ReplanReason PlanAttempt::KeepCommitted(const AttemptRequest& request, ReplanResult* result) {
-  KeepWay(request, result);
+  KeepPath(request, result);
   if (!kept_.known()) return ReplanReason::kCollisionRemains;
   Posed posed;
   const ReplanReason refused = Pose(request, request.segments, &posed);
@@ -242,14 +242,15 @@ ReplanReason PlanAttempt::KeepCommitted(const AttemptRequest& request, ReplanRes
 
 /// One way leads past all obstacles, so that one detour does not lead into the next. Ways differ in how they pass the
 /// first obstacle.
-ReplanReason PlanAttempt::TryWays(const AttemptRequest& asked, Posed* posed, ReplanResult* result) {
+ReplanReason PlanAttempt::TryPaths(const AttemptRequest& asked, Posed* posed,
+                                   ReplanResult* result) {
   AttemptRequest request = asked;
   if (!request.previous) posed->prepared->first_guess = posed->prepared->start.y;
   first_curve_ = best_.pair.curve;
   if (best_.blocked.back().at_end) return ReplanReason::kGoalBlocked;
   const BlockedRun first = best_.blocked.front();
   BlockedRun span = {first.t_in, best_.blocked.back().t_out, first.at_start, false};
-  if (!first.at_start) KeepWay(request, result);
+  if (!first.at_start) KeepPath(request, result);
   const bool keeps_side = kept_.known() && !first.at_start;
   if (keeps_side) {
     EndBeside(kept_, first_curve_, *request.space, options_.constants.hold_beside_time, &span);
@@ -266,12 +267,12 @@ ReplanReason PlanAttempt::TryWays(const AttemptRequest& asked, Posed* posed, Rep
     const bool kept = i == 0 && keeps_side;
     if (!kept) {
       const ReplanReason found =
-          LayWay(request, span,
-                 planned ? options_.constants.path_cost_ratio * first_cost : kNoBound, result);
+          LayPath(request, span,
+                  planned ? options_.constants.path_cost_ratio * first_cost : kNoBound, result);
       if (i > 0 && found != ReplanReason::kNone) break;  // there is no other way
       if (found != ReplanReason::kNone) return found;
     }
-    const TimedWay& way = kept ? kept_ : way_;
+    const TimedPath& way = kept ? kept_ : way_;
     if (i == 0) first_cost = kept ? kept_.LengthOf(kept_.bound().back()) : finder_.cost();
     if (i == 0 && !request.previous) Postpone(way, posed, &request);
     Candidate* candidate = i == 0 ? &best_ : &other_;
@@ -282,7 +283,7 @@ ReplanReason PlanAttempt::TryWays(const AttemptRequest& asked, Posed* posed, Rep
     if (spent_) break;
     way.Sample(way.bound().back().from, way.bound().back().to, &path_);
     const FlatState through = first_curve_.Evaluate(0.5 * (first.t_in + first.t_out));
-    const std::optional<Barrier> barrier = CloseWay(path_, through);
+    const std::optional<Barrier> barrier = ClosePath(path_, through);
     if (!barrier) break;
     finder_.Close(*barrier);
   }
@@ -291,7 +292,7 @@ ReplanReason PlanAttempt::TryWays(const AttemptRequest& asked, Posed* posed, Rep
 
 /// The path around takes longer than the straight one: by its extra length at full speed. A committed arrival is not
 /// postponed like that.
-void PlanAttempt::Postpone(const TimedWay& way, Posed* posed, AttemptRequest* request) {
+void PlanAttempt::Postpone(const TimedPath& way, Posed* posed, AttemptRequest* request) {
   if (request->arrival == ArrivalMode::kFree) return;
   AttemptRequest later = *request;
   later.duration = std::min(request->duration + way.delay(), options_.max_duration);
@@ -312,7 +313,7 @@ void PlanAttempt::Postpone(const TimedWay& way, Posed* posed, AttemptRequest* re
 /// Binds control points along the way and solves, until the curve is clear, or hardly clearer than before. The first
 /// round binds the parts of the way that need it, and `more`; later ones what is still blocked. A plan must end
 /// before `latest` after the start [s].
-ReplanReason PlanAttempt::Follow(const AttemptRequest& request, const TimedWay& way,
+ReplanReason PlanAttempt::Follow(const AttemptRequest& request, const TimedPath& way,
                                  const BoundParts& more, double latest, const Posed& posed,
                                  Candidate* candidate, ReplanResult* result) {
   binder_.Begin(posed.segments + 3);
@@ -347,7 +348,7 @@ ReplanReason PlanAttempt::Follow(const AttemptRequest& request, const TimedWay& 
 }
 
 /// Leads blocked parts to the way, with a plane at the corner that is cut.
-ReplanReason PlanAttempt::BindBlocked(const AttemptRequest& request, const TimedWay& way,
+ReplanReason PlanAttempt::BindBlocked(const AttemptRequest& request, const TimedPath& way,
                                       const Candidate& candidate) {
   const UniformBspline& curve = candidate.pair.curve;
   binder_.Start(curve);
@@ -398,7 +399,7 @@ ReplanReason PlanAttempt::Solve(const AttemptRequest& request, const Posed& pose
                                    prepared.solver,
                                    {},
                                    {},
-                                   finder_.ways_closed()});
+                                   finder_.paths_closed()});
   }
   if (!prepared.solver.usable()) return ReplanReason::kSolverFailed;
   prepared.start.y = prepared.solver.x;

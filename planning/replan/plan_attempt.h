@@ -7,8 +7,8 @@
 
 #include "planning/replan/pair_binder.h"
 #include "planning/replan/prepared_problems.h"
-#include "planning/search/timed_way.h"
-#include "planning/search/way_finder.h"
+#include "planning/search/path_finder.h"
+#include "planning/search/timed_path.h"
 #include "planning/search/work_budget.h"
 #include "touchdown/planning/certify/certificate.h"
 #include "touchdown/planning/certify/stored_stop.h"
@@ -116,16 +116,16 @@ class PlanAttempt {
                                  ReplanResult* result);
   ReplanReason Refine(const AttemptRequest& request, Posed* posed, Candidate* candidate,
                       ReplanResult* result);
-  void KeepWay(const AttemptRequest& request, ReplanResult* result);
-  ReplanReason LayWay(const AttemptRequest& request, const BlockedRun& span, double max_cost,
-                      ReplanResult* result);
-  void Postpone(const TimedWay& way, Posed* posed, AttemptRequest* request);
+  void KeepPath(const AttemptRequest& request, ReplanResult* result);
+  ReplanReason LayPath(const AttemptRequest& request, const BlockedRun& span, double max_cost,
+                       ReplanResult* result);
+  void Postpone(const TimedPath& way, Posed* posed, AttemptRequest* request);
   ReplanReason KeepCommitted(const AttemptRequest& request, ReplanResult* result);
-  ReplanReason TryWays(const AttemptRequest& request, Posed* posed, ReplanResult* result);
-  ReplanReason Follow(const AttemptRequest& request, const TimedWay& way, const BoundParts& more,
+  ReplanReason TryPaths(const AttemptRequest& request, Posed* posed, ReplanResult* result);
+  ReplanReason Follow(const AttemptRequest& request, const TimedPath& way, const BoundParts& more,
                       double latest, const Posed& posed, Candidate* candidate,
                       ReplanResult* result);
-  ReplanReason BindBlocked(const AttemptRequest& request, const TimedWay& way,
+  ReplanReason BindBlocked(const AttemptRequest& request, const TimedPath& way,
                            const Candidate& candidate);
   ReplanReason Solve(const AttemptRequest& request, const Posed& posed, Candidate* candidate,
                      ReplanResult* result);
@@ -138,7 +138,7 @@ class PlanAttempt {
   ReplannerOptions options_;
   PreparedProblems problems_;
   WorkBudget budget_;  // of the step
-  WayFinder finder_;
+  PathFinder finder_;
   PairBinder binder_;
   std::vector<std::string> pressed_;  // terms whose weights are scaled
 
@@ -148,7 +148,7 @@ class PlanAttempt {
   bool spent_ = false;
   Candidate best_, other_;
   UniformBspline first_curve_;  // before any pair
-  TimedWay kept_, way_;
+  TimedPath kept_, way_;
   bool kept_asked_ = false;
   FreeSpace later_space_;
   GuidePath path_;

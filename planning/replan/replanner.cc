@@ -19,7 +19,7 @@
 #include "planning/replan/fallback_ladder.h"
 #include "planning/replan/plan_attempt.h"
 #include "planning/replan/replan_checks.h"
-#include "planning/search/timed_way.h"
+#include "planning/search/timed_path.h"
 #include "touchdown/planning/replan/attempt_ladder.h"
 #include "touchdown/planning/replan/stage_timer.h"
 

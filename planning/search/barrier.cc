@@ -17,7 +17,7 @@ constexpr double kCosHalf = 0.1;  // a little less than half of the plane
 
 }  // namespace
 
-std::optional<Barrier> CloseWay(std::span<const Eigen::Vector3d> path, const FlatState& through) {
+std::optional<Barrier> ClosePath(std::span<const Eigen::Vector3d> path, const FlatState& through) {
   Barrier barrier;
   barrier.p = through.p_WB;
   if (path.empty()) return std::nullopt;

@@ -21,7 +21,7 @@ struct Barrier {
 /// Closes the way that a path takes around an obstacle. `through` is the state of a curve through
 /// the obstacle. None if the path passes too near to the state to determine a side, or there is no
 /// direction.
-std::optional<Barrier> CloseWay(std::span<const Eigen::Vector3d> path, const FlatState& through);
+std::optional<Barrier> ClosePath(std::span<const Eigen::Vector3d> path, const FlatState& through);
 
 /// Distance from the plane of the barrier, positive along its normal [m].
 inline double DistanceAlong(const Barrier& barrier, const Eigen::Vector3d& p_W) {

@@ -79,7 +79,7 @@ std::uint32_t SpanSearch::Queue::Pop() {
   return entry.address;
 }
 
-SpanSearch::SpanSearch(const WayCost& cost, double greed)
+SpanSearch::SpanSearch(const PathCost& cost, double greed)
     : vertical_cost_(static_cast<float>(cost.vertical)),
       tight_cost_(static_cast<float>(cost.tight)),
       greed_(static_cast<float>(greed)) {

@@ -12,7 +12,7 @@
 namespace touchdown::planning {
 
 /// What a way costs, in [m] of level flight with room on both sides.
-struct WayCost {
+struct PathCost {
   double vertical = 2.0;  ///< a metre up or down; going around is preferred to going over ...
   double tight = 1.0;     ///< a metre beside something: wide passages are preferred
 };
@@ -27,7 +27,7 @@ class SpanSearch {
   /// With `greed` > 1 spans near the goal come first. A way then costs more than the least, hardly more than this
   /// many times as much, and is found after fewer expansions. Throws std::invalid_argument unless all are in [1,
   /// 100].
-  explicit SpanSearch(const WayCost& cost = {}, double greed = 1.0);
+  explicit SpanSearch(const PathCost& cost = {}, double greed = 1.0);
 
   /// Makes room for searches on maps with this one's window, which the first search does otherwise.
   void Reserve(const OccupancyMap& map);

@@ -17,7 +17,7 @@ FlatState Flying(const Vector3d& p, const Vector3d& v) {
 
 TEST(Barrier, ClosesTheSideOnWhichThePathPasses) {
   const std::vector<Vector3d> left = {{-1, 0, 1}, {0, 0.8, 1}, {1, 0, 1}};
-  const std::optional<Barrier> barrier = CloseWay(left, Flying({0, 0, 1}, {2, 0, 0}));
+  const std::optional<Barrier> barrier = ClosePath(left, Flying({0, 0, 1}, {2, 0, 0}));
   ASSERT_TRUE(barrier.has_value());
   EXPECT_TRUE(barrier->side.isApprox(Vector3d::UnitY()));
   EXPECT_TRUE(Closes(*barrier, {0.04, 0.5, 1.2}, 0.1));
@@ -28,7 +28,7 @@ TEST(Barrier, ClosesTheSideOnWhichThePathPasses) {
 
 TEST(Barrier, AStateAtRestTakesThePathsDirection) {
   const std::vector<Vector3d> over = {{0, -1, 1}, {0, 0, 1.9}, {0, 1, 1}};
-  const std::optional<Barrier> barrier = CloseWay(over, Flying({0, 0, 1}, Vector3d::Zero()));
+  const std::optional<Barrier> barrier = ClosePath(over, Flying({0, 0, 1}, Vector3d::Zero()));
   ASSERT_TRUE(barrier.has_value());
   EXPECT_TRUE(barrier->normal.isApprox(Vector3d::UnitY()));
   EXPECT_TRUE(barrier->side.isApprox(Vector3d::UnitZ()));
@@ -36,14 +36,14 @@ TEST(Barrier, AStateAtRestTakesThePathsDirection) {
 
 TEST(Barrier, APathThroughTheStateHasNoSide) {
   const std::vector<Vector3d> through = {{-1, 0, 1}, {0, 0.001, 1}, {1, 0, 1}};
-  EXPECT_FALSE(CloseWay(through, Flying({0, 0, 1}, {1, 0, 0})).has_value());
+  EXPECT_FALSE(ClosePath(through, Flying({0, 0, 1}, {1, 0, 0})).has_value());
 }
 
 TEST(Barrier, WithoutADirectionThereIsNone) {
   const FlatState still = Flying({0, 0, 1}, Vector3d::Zero());
-  EXPECT_FALSE(CloseWay({}, still).has_value());
+  EXPECT_FALSE(ClosePath({}, still).has_value());
   const std::vector<Vector3d> one = {{0, 0.5, 1}};
-  EXPECT_FALSE(CloseWay(one, still).has_value());
+  EXPECT_FALSE(ClosePath(one, still).has_value());
 }
 
 }  // namespace

@@ -117,7 +117,7 @@ TEST(PairBinder, NeverGivesMorePairsThanTheProblemHolds) {
 // A detour takes longer than what it replaces: control points are wanted on it in even steps of that time.
 TEST(PairBinder, AWayIsBoundAlongItsDetourAndBesideIt) {
   Wall wall;
-  TimedWay way;
+  TimedPath way;
   const BlockedRun& run = wall.runs.front();
   way.AddCurve(wall.curve, 0.0, run.t_in);
   way.AddDetour(wall.curve, run, wall.guide, 1.0);
@@ -167,7 +167,7 @@ TEST(PairBinder, WhatWasBoundIsBoundAgainOnTheRestOfTheCurve) {
   ControlPoints rest = wall.curve.control_points().rightCols(kPoints - kGone);
   rest.row(1).array() += 0.5;
   const UniformBspline later(rest, kInterval, kGone * kInterval);
-  TimedWay way;
+  TimedPath way;
   way.AddCurve(later, later.t0(), later.t_end());
   binder.Begin(kPoints - kGone);
   binder.Lead(way, parts);

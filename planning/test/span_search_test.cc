@@ -12,7 +12,7 @@ namespace touchdown::planning {
 namespace {
 
 constexpr int kEnough = 100000;
-constexpr WayCost kPlain{2.0, 1.0};
+constexpr PathCost kPlain{2.0, 1.0};
 
 /// Blocks the cells whose centres are in a box.
 void Fill(OccupancyMap* map, const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
@@ -21,8 +21,8 @@ void Fill(OccupancyMap* map, const Eigen::Vector3d& low, const Eigen::Vector3d& 
 }
 
 /// Places are free and follow each other from column to column.
-void ExpectWay(const FreeSpace& space, const GuidePath& path, const Eigen::Vector3d& from,
-               const Eigen::Vector3d& to) {
+void ExpectPath(const FreeSpace& space, const GuidePath& path, const Eigen::Vector3d& from,
+                const Eigen::Vector3d& to) {
   ASSERT_GE(path.size(), 2u);
   EXPECT_EQ(space.map->CellOf(path.front()), space.map->CellOf(from));
   EXPECT_EQ(space.map->CellOf(path.back()), space.map->CellOf(to));
@@ -64,7 +64,7 @@ TEST(SpanSearch, FindsAWayWhereThereIsOneAndHardlyLongerThanTheShortest) {
     CellIndex start = map.CellOf(from), goal = map.CellOf(to);
     GridSearch::NearestFree(space, &start);
     GridSearch::NearestFree(space, &goal);
-    ExpectWay(space, path, map.CentreOf(start), map.CentreOf(goal));
+    ExpectPath(space, path, map.CentreOf(start), map.CentreOf(goal));
   }
   EXPECT_GT(found, 25);
   EXPECT_LT(expansions, of_cells / 2);
@@ -77,7 +77,7 @@ TEST(SpanSearch, GoesAroundWhatIsNarrowAndOverWhatIsLow) {
   const auto farthest = [&](int axis, const OccupancyMap& map) {
     const FreeSpace space = SpaceOf(map);
     EXPECT_EQ(search.Search(space, from, to, kEnough, &path), SearchStatus::kFound);
-    ExpectWay(space, path, from, to);
+    ExpectPath(space, path, from, to);
     double most = 0.0;
     for (const Eigen::Vector3d& p : path) most = std::max(most, std::abs(p[axis]));
     return most;
@@ -113,7 +113,7 @@ TEST(SpanSearch, FindsTheOneWindowOfAWallSoonerThanCells) {
   EXPECT_EQ(search.Search(closed_space, from, to, kEnough, &path), SearchStatus::kNoPath);
   EXPECT_TRUE(path.empty());
   ASSERT_EQ(search.Search(space, from, to, kEnough, &path), SearchStatus::kFound);
-  ExpectWay(space, path, from, to);
+  ExpectPath(space, path, from, to);
   ASSERT_EQ(cells.Search(space, from, to, kEnough, &path), SearchStatus::kFound);
   EXPECT_LT(search.expansions(), cells.expansions() / 8);
 }
@@ -195,12 +195,12 @@ TEST(SpanSearch, ABarrierLeadsTheOtherWay) {
   FlatState through;
   through.p_WB = {0.05, 0.05, 0.05};
   through.v_WB = Eigen::Vector3d::UnitX();
-  const std::optional<Barrier> barrier = CloseWay(path, through);
+  const std::optional<Barrier> barrier = ClosePath(path, through);
   ASSERT_TRUE(barrier);
   const double side = barrier->side.y();
   ASSERT_EQ(search.Search(space, from, to, kEnough, &path, std::span(&*barrier, 1)),
             SearchStatus::kFound);
-  const std::optional<Barrier> other = CloseWay(path, through);
+  const std::optional<Barrier> other = ClosePath(path, through);
   ASSERT_TRUE(other);
   EXPECT_LT(other->side.y() * side, 0.0);
 }

@@ -48,7 +48,7 @@ struct HostileTally {
   int all_stood() const;
 };
 
-/// A flight within the assumptions collided, or made a step without a proven pair: a defect.
+/// A flight within the assumptions collided, or made a step without a proven flight pair: a defect.
 bool ViolatesGuarantee(const std::vector<SweepRow>& rows);
 
 /// The rows of one family, of all if it is empty; within or beyond.

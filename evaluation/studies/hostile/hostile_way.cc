@@ -50,9 +50,9 @@ struct LanePoint {
   double latest = 0.0;  // that the pad is there [s]
 };
 
-class WayFinder {
+class PathFinder {
  public:
-  WayFinder(const Scenario& scenario, const Registries& registries, double horizon)
+  PathFinder(const Scenario& scenario, const Registries& registries, double horizon)
       : scenario_(scenario), clearance_(WayClearance(scenario)), start_(scenario.start.position) {
     for (const NamedObstacle& named : ObstaclesOf(scenario)) {
       obstacles_.push_back(named.obstacle);
@@ -228,7 +228,7 @@ double WayClearance(const Scenario& scenario) {
 }
 
 HostileWay FindWay(const Scenario& scenario, const Registries& registries, double horizon) {
-  return WayFinder(scenario, registries, horizon).Find();
+  return PathFinder(scenario, registries, horizon).Find();
 }
 
 }  // namespace touchdown::evaluation

@@ -109,6 +109,6 @@ void OracleVerdicts::Write(const std::string& path) const {
   file.Commit();
 }
 
-OracleVerdicts StandardOracleBook() { return OracleVerdicts(DataPath("replan_oracle.csv")); }
+OracleVerdicts StandardOracleVerdicts() { return OracleVerdicts(DataPath("replan_oracle.csv")); }
 
 }  // namespace touchdown::evaluation

@@ -34,7 +34,7 @@ class OracleVerdicts {
   std::map<Key, std::string> verdicts_;                             // a letter each
 };
 
-/// The book that is installed, or in the source tree. @throws BadInput if it is in neither.
-OracleVerdicts StandardOracleBook();
+/// The verdicts that are installed, or in the source tree. @throws BadInput if they are in neither.
+OracleVerdicts StandardOracleVerdicts();
 
 }  // namespace touchdown::evaluation

@@ -45,9 +45,9 @@ planning::ReplannerOptions OwnFormulation(planning::ReplannerOptions options) {
 }
 
 /// Places of a path at a constant speed, from 0 to `time` [s].
-TimedWay InTime(const planning::GuidePath& path, double time) {
+TimedMotion InTime(const planning::GuidePath& path, double time) {
   const double length = std::max(planning::PathLength(path), 1e-9);
-  TimedWay way;
+  TimedMotion way;
   double gone = 0.0;
   for (std::size_t i = 0; i < path.size(); ++i) {
     if (i > 0) gone += (path[i] - path[i - 1]).norm();
@@ -56,7 +56,7 @@ TimedWay InTime(const planning::GuidePath& path, double time) {
   return way;
 }
 
-Vector3d PlaceAt(const TimedWay& way, double t) {
+Vector3d PlaceAt(const TimedMotion& way, double t) {
   const auto after = std::upper_bound(way.begin(), way.end(), t,
                                       [](double a, const TimedPlace& b) { return a < b.t; });
   if (after == way.begin()) return way.front().p;
@@ -80,8 +80,8 @@ class PlanOracle::Impl {
  private:
   bool TryPaths(const char* name, double tight_cost);
   bool TryMotions();
-  bool TryWay(const TimedWay& way, double T, const char* name);
-  bool Polish(const TimedWay& way, int segments, double T);
+  bool TryWay(const TimedMotion& way, double T, const char* name);
+  bool Polish(const TimedMotion& way, int segments, double T);
   bool Bind(const UniformBspline& curve, bool first, const planning::GuidePath& guide);
   planning::Certificate Judge(planning::FlightPair* pair) const;
 
@@ -158,7 +158,7 @@ bool PlanOracle::Impl::TryPaths(const char* name, double tight_cost) {
           if (blocked.empty()) break;
           const planning::BlockedRun& run = at_last ? blocked.back() : blocked.front();
           const auto barrier =
-              planning::CloseWay(path, straight.Evaluate(0.5 * (run.t_in + run.t_out)));
+              planning::ClosePath(path, straight.Evaluate(0.5 * (run.t_in + run.t_out)));
           if (!barrier) break;
           barriers.push_back(*barrier);
         }
@@ -179,11 +179,11 @@ bool PlanOracle::Impl::TryMotions() {
       MotionSearchOptions options;
       options.share = share;
       options.step = step;
-      const std::optional<TimedWay> way = SearchMotion(
+      const std::optional<TimedMotion> way = SearchMotion(
           scene_->start, *scene_->end, scene_->endpoint, options_.limits, space_, options);
       if (!way) continue;
       for (const double stretch : {1.0, 1.05, 1.12, 1.2}) {
-        TimedWay slower = *way;
+        TimedMotion slower = *way;
         for (TimedPlace& place : slower) place.t *= stretch;
         if (TryWay(slower, slower.back().t, "motion")) return true;
       }
@@ -192,7 +192,7 @@ bool PlanOracle::Impl::TryMotions() {
   return false;
 }
 
-bool PlanOracle::Impl::TryWay(const TimedWay& way, double T, const char* name) {
+bool PlanOracle::Impl::TryWay(const TimedMotion& way, double T, const char* name) {
   int last = 0;
   for (const double share : kSegmentShares) {
     const int segments = planning::SegmentsFor(T, options_.limits, share, options_.segment_length);
@@ -221,7 +221,7 @@ planning::Certificate PlanOracle::Impl::Judge(planning::FlightPair* pair) const 
 }
 
 /// From a way in time to a plan.
-bool PlanOracle::Impl::Polish(const TimedWay& way, int segments, double T) {
+bool PlanOracle::Impl::Polish(const TimedMotion& way, int segments, double T) {
   planning::PreparedProblem& prepared = problems_.At(segments, planning::ArrivalMode::kFixed);
   planning::LandingProblem& problem = *prepared.problem;
   problem.SetBoundary(scene_->start, 0.0, *scene_->end, scene_->endpoint);

@@ -16,7 +16,7 @@ double HullAtEveryTilt(const estimation::VehicleModel& model);
 /// Plans stay above this away from the pad [m].
 double LowestPlan(const estimation::VehicleModel& model);
 
-/// Least clearance of plans from obstacles [m]: the clearance of proven pairs in calm air, the hull
+/// Least clearance of plans from obstacles [m]: the clearance of proven flight pairs in calm air, the hull
 /// at every tilt and its margins.
 double LeastClearance(const estimation::VehicleModel& model);
 

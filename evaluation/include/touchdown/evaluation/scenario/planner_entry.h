@@ -22,7 +22,7 @@ struct PlannerSetup : PartSetup {
 /// How a planner gets into the program (docs/adding_a_planner.md).
 struct PlannerEntry : Part {
   bool lands = false;   ///< its plans may end in contact: it takes `descent: planned`
-  bool proves = false;  ///< it flies proven pairs (docs/safety.md), and is watched as such
+  bool proves = false;  ///< it flies proven flight pairs (docs/safety.md), and is watched as such
   bool avoids = true;   ///< it keeps clear of the map, which is grown by the hull at least
   double rate = 0.0;    ///< at which it is asked [Hz]; 0: planning.rate
   std::string solver =

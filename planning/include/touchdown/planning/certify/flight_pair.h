@@ -15,8 +15,8 @@ struct FlightPair {
   double t_stop = std::numeric_limits<double>::infinity();  ///< the stop begins [s]; infinite: the
                                                             ///< curve is a stop itself
   UniformBspline stop;
-  bool proven = true;  ///< false: the least that could be done, and not a proven pair
-  /// It begins among cells that no proven pair has led to; the first hover may.
+  bool proven = true;  ///< false: the least that could be done, and not a proven flight pair
+  /// It begins among cells that no proven flight pair has led to; the first hover may.
   bool from_unknown = true;
 
   /// The reference at time t (yaw fields zero). Does not allocate.

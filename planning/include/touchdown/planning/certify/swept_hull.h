@@ -24,7 +24,7 @@ struct HullSpace {
   double foot_depth = 0.0;      ///< of the feet below the body's origin [m]
   /// Only cells seen to be occupied block: for a trajectory that was proven before.
   bool unseen_passes = false;
-  /// The start is on a proven pair: the cells among which the hull starts were observed free then, or are the deck's.
+  /// The start is on a proven flight pair: the cells among which the hull starts were observed free then, or are the deck's.
   bool start_proven = false;
 
   double radius() const { return hull_radius + margin; }
@@ -33,7 +33,7 @@ struct HullSpace {
 /// Cells that are not observed free among which a sweep starts. It only moves away from these.
 struct StartCells {
   bool occupied = false;  ///< the hull is among some that are seen to be occupied
-  bool unknown = false;   ///< ... that are neither, and to which no proven pair has led it
+  bool unknown = false;   ///< ... that are neither, and to which no proven flight pair has led it
   bool narrow = false;    ///< the grown hull is among either
 
   bool leaves() const { return occupied || unknown; }

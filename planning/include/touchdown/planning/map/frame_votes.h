@@ -26,10 +26,10 @@ class FrameVotes {
   /// A window of 2^n cells a side, n <= 10.
   explicit FrameVotes(const Eigen::Vector3i& size_log2);
 
-  /// Begins a frame seen from `eye`, which lies in the window.
-  void Begin(const Eigen::Vector3d& eye);
+  /// Begins a frame of a camera at `p_WC` [m], which lies in the window.
+  void Begin(const Eigen::Vector3d& p_WC);
 
-  /// Votes miss for the cells within the window that the segment from the eye to `end` passes. The
+  /// Votes miss for the cells within the window that the segment from the camera to `end` passes. The
   /// cell that holds `end` is left out: the ray sees only a part of it.
   void AddRay(const Eigen::Vector3d& end);
 
@@ -57,7 +57,7 @@ class FrameVotes {
   std::uint64_t TakeMisses(const Eigen::Vector3i& first, int count);
 
  private:
-  /// A segment from the eye, clipped to the window.
+  /// A segment from the camera, clipped to the window.
   struct Ray {
     Eigen::Vector3d along;        ///< [cells]
     Eigen::Vector3d per_cell;     ///< ray parameter from one face to the next, on each axis
@@ -89,8 +89,8 @@ class FrameVotes {
   int point_;                          // of tracks
   double one_;                         // cell, in a track's units before they are shifted
   std::array<std::uint64_t, 3> bits_;  // of each coordinate in an address
-  Eigen::Vector3d eye_ = Eigen::Vector3d::Zero();
-  Eigen::Vector3i first_ = Eigen::Vector3i::Zero();  // the eye's cell
+  Eigen::Vector3d p_WC_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3i first_ = Eigen::Vector3i::Zero();  // the camera's cell
   Eigen::Vector3i low_ = Eigen::Vector3i::Zero();
   Eigen::Vector3i high_ = Eigen::Vector3i::Zero();
   std::vector<std::uint8_t> votes_;

@@ -249,14 +249,14 @@ class OccupancyMap {
 
   CellBox window() const { return {origin_, origin_ + size_}; }
   bool Blocks(const Cell& cell) const { return cell.log_odds >= occupied_ && !cell.doubtful; }
-  int RangeOf(const CellIndex& cell, const Eigen::Vector3d& eye) const;
+  int RangeOf(const CellIndex& cell, const Eigen::Vector3d& p_WC) const;
   /// Error of a return from `range`: the map's, and the camera's [m].
   double ToleranceAt(double range) const {
     return options_.resolution + kNoiseSigmas * options_.range_noise * range;
   }
-  void ApplyReturn(std::uint8_t vote, const CellIndex& cell, const Eigen::Vector3d& eye, double t);
-  void ApplyMisses(const Eigen::Vector3d& eye);
-  void ApplyMissToHit(const CellIndex& cell, const Eigen::Vector3d& eye);
+  void ApplyReturn(std::uint8_t vote, const CellIndex& cell, const Eigen::Vector3d& p_WC, double t);
+  void ApplyMisses(const Eigen::Vector3d& p_WC);
+  void ApplyMissToHit(const CellIndex& cell, const Eigen::Vector3d& p_WC);
   void MakeCertain(const CellIndex& cell, bool explained);
   void Forget(const CellIndex& cell, const CellBox& stays, CellBlocks* memory);
   void Set(const CellIndex& cell, Cell value);

@@ -10,9 +10,9 @@ namespace touchdown::planning {
 /// the ladder below a plan are in fallback_ladder.cc and fallback.cc. `StepConstantTable` explains each. `touchdown
 /// study replan --parts sensitivity` measures their effect.
 struct StepConstants {
-  // Ways past what blocks a curve (way_finder.h).
+  // Ways past what blocks a curve (path_finder.h).
   double heuristic_weight = 2.0;
-  double way_tight_cost = 8.0;
+  double tight_cost = 8.0;
   double detour_longer = 2.0;
   double hold_beside_time = 0.5;
   double path_cost_ratio = 1.05;

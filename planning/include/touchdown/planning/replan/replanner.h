@@ -52,7 +52,7 @@ class Replanner : public Planner {
   void CommitHover(const Eigen::Vector3d& p_W, double t) override;
 
   /// One replanning step against the map. The result stays valid until the next call. Throws std::invalid_argument
-  /// before the first CommitHover. The result is a proven pair, or says that it is not (docs/safety.md). Nothing can
+  /// before the first CommitHover. The result is a proven flight pair, or says that it is not (docs/safety.md). Nothing can
   /// be proven in cells that the map has not observed. So a map that was filled by hand needs MarkFree, one of a
   /// sensor at least around the start.
   const ReplanResult& Replan(const ReplanInput& input, const OccupancyMap& map) override;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "planning/search/way_finder.h"
+#include "planning/search/path_finder.h"
 
 #include <gtest/gtest.h>
 
@@ -36,29 +36,29 @@ BlockedRun OnlyRun(const UniformBspline& curve, const FreeSpace& space) {
   return runs.front();
 }
 
-TimedWay Kept(WayFinder* finder, WorkBudget* budget, const UniformBspline& committed,
-              const FreeSpace& space, int expansions = kEnough) {
-  TimedWay way;
+TimedPath Kept(PathFinder* finder, WorkBudget* budget, const UniformBspline& committed,
+               const FreeSpace& space, int expansions = kEnough) {
+  TimedPath way;
   budget->Refill(expansions);
   finder->Begin(1.0);
   finder->Keep(committed, 0.0, space, &way);
   return way;
 }
 
-GuidePath AllOf(const TimedWay& way) {
+GuidePath AllOf(const TimedPath& way) {
   GuidePath path;
   way.Sample(way.t0(), way.t_end(), &path);
   return path;
 }
 
-TEST(WayFinder, LeadsPastARunAndTheOtherWayWhenThatIsClosed) {
+TEST(PathFinder, LeadsPastARunAndTheOtherWayWhenThatIsClosed) {
   const OccupancyMap map = Wall();
   const FreeSpace space = SpaceOf(map);
   const UniformBspline curve = Straight({-2.0, 0.0, 0.05}, {2.0, 0.0, 0.05});
   const BlockedRun run = OnlyRun(curve, space);
   WorkBudget budget;
-  WayFinder finder(kUp, {}, &budget);
-  TimedWay way;
+  PathFinder finder(kUp, {}, &budget);
+  TimedPath way;
   budget.Refill(kEnough);
   finder.Begin(1.0);
   ASSERT_EQ(finder.LeadPast(curve, run, space, &way), SearchStatus::kFound);
@@ -67,10 +67,10 @@ TEST(WayFinder, LeadsPastARunAndTheOtherWayWhenThatIsClosed) {
   EXPECT_NEAR((way.AtShare(1.0) - curve.Position(curve.t_end())).norm(), 0.0, 1e-9);
   EXPECT_GT(way.delay(), 0.1);
   const double cost = finder.cost();
-  const auto barrier = CloseWay(finder.detour(), curve.Evaluate(0.5 * (run.t_in + run.t_out)));
+  const auto barrier = ClosePath(finder.detour(), curve.Evaluate(0.5 * (run.t_in + run.t_out)));
   ASSERT_TRUE(barrier);
   finder.Close(*barrier);
-  EXPECT_EQ(finder.ways_closed(), 1);
+  EXPECT_EQ(finder.paths_closed(), 1);
   ASSERT_EQ(finder.LeadPast(curve, run, space, &way), SearchStatus::kFound);
   double farthest = 0.0;
   for (const Eigen::Vector3d& p : AllOf(way)) {
@@ -81,29 +81,29 @@ TEST(WayFinder, LeadsPastARunAndTheOtherWayWhenThatIsClosed) {
   EXPECT_EQ(finder.LeadPast(curve, run, space, &way, 0, 0.9 * cost), SearchStatus::kNoPath);
   EXPECT_FALSE(way.known());
   finder.Begin(1.0);
-  EXPECT_EQ(finder.ways_closed(), 0);
+  EXPECT_EQ(finder.paths_closed(), 0);
 }
 
-TEST(WayFinder, KeepsTheCommittedCurveWhileItIsClear) {
+TEST(PathFinder, KeepsTheCommittedCurveWhileItIsClear) {
   const OccupancyMap map = Wall();
   const FreeSpace space = SpaceOf(map);
   const UniformBspline committed = Straight({-2.0, -1.5, 0.05}, {2.0, -1.5, 0.05});
   WorkBudget budget;
-  WayFinder finder(kUp, {}, &budget);
-  const TimedWay way = Kept(&finder, &budget, committed, space, 0);
+  PathFinder finder(kUp, {}, &budget);
+  const TimedPath way = Kept(&finder, &budget, committed, space, 0);
   ASSERT_TRUE(way.known());
   EXPECT_TRUE(way.bound().empty());
   for (const Eigen::Vector3d& p : AllOf(way)) EXPECT_NEAR(p.y(), -1.5, 1e-9);
 }
 
-TEST(WayFinder, ADetourPassesWhatHasComeToBlockTheCommittedCurve) {
+TEST(PathFinder, ADetourPassesWhatHasComeToBlockTheCommittedCurve) {
   const OccupancyMap map = Wall();
   const FreeSpace space = SpaceOf(map);
   // It was clear of a wall that seemed shorter.
   const UniformBspline committed = Straight({-2.0, 0.5, 0.05}, {2.0, 0.5, 0.05});
   WorkBudget budget;
-  WayFinder finder(kUp, {}, &budget);
-  const TimedWay way = Kept(&finder, &budget, committed, space);
+  PathFinder finder(kUp, {}, &budget);
+  const TimedPath way = Kept(&finder, &budget, committed, space);
   ASSERT_TRUE(way.known());
   EXPECT_EQ(way.bound().size(), 1u);
   double farthest = 0.0;
@@ -118,7 +118,7 @@ TEST(WayFinder, ADetourPassesWhatHasComeToBlockTheCommittedCurve) {
   EXPECT_LT(PathLength(AllOf(way)), 5.5);
 }
 
-TEST(WayFinder, KeepsNothingWhereADetourIsNone) {
+TEST(PathFinder, KeepsNothingWhereADetourIsNone) {
   const OccupancyMap map = Wall();
   OccupancyMap across(SmallMap(0.1));
   for (double y = -2.55; y < 2.6; y += 0.1) {
@@ -126,7 +126,7 @@ TEST(WayFinder, KeepsNothingWhereADetourIsNone) {
   }
   const UniformBspline middle = Straight({-2.0, 0.3, 0.05}, {2.0, 0.3, 0.05});
   WorkBudget budget;
-  WayFinder finder(kUp, {}, &budget);
+  PathFinder finder(kUp, {}, &budget);
   EXPECT_TRUE(Kept(&finder, &budget, middle, SpaceOf(map)).known());
   EXPECT_FALSE(Kept(&finder, &budget, middle, SpaceOf(across)).known());  // too long
   EXPECT_FALSE(Kept(&finder, &budget, middle, SpaceOf(map), 5).known());  // no time to look for it
@@ -139,7 +139,7 @@ TEST(WayFinder, KeepsNothingWhereADetourIsNone) {
 
 // The curve enters the front of an obstacle whose back was not seen. Where it is free again it is
 // behind the front, and a way that ended there would lead in.
-TEST(WayFinder, ARunEndsWhereTheCurveIsOnTheWaysSide) {
+TEST(PathFinder, ARunEndsWhereTheCurveIsOnTheWaysSide) {
   OccupancyMap map = Wall();
   for (double x = 0.05; x < 1.5; x += 0.1) {  // the side that the way passes
     for (double z = -1.55; z < 1.6; z += 0.1) map.SetOccupied({x, -0.55, z});
@@ -149,7 +149,7 @@ TEST(WayFinder, ARunEndsWhereTheCurveIsOnTheWaysSide) {
   const UniformBspline committed = Straight({-2.0, -1.5, 0.05}, {2.5, -1.5, 0.05});
   BlockedRun run = OnlyRun(curve, space);
   EXPECT_LT(curve.Evaluate(run.t_out).p_WB.x(), 0.5);
-  TimedWay way;
+  TimedPath way;
   way.AddCurve(committed, 0.0, committed.t_end());
   EndBeside(way, curve, space, 0.5, &run);
   EXPECT_GT(curve.Evaluate(run.t_out).p_WB.x(), 1.5);
@@ -165,15 +165,15 @@ TEST(WayFinder, ARunEndsWhereTheCurveIsOnTheWaysSide) {
   EXPECT_DOUBLE_EQ(short_run.t_out, t_out);
 }
 
-TEST(WayFinder, ARunThatLeavesTheWindowIsCutThere) {
+TEST(PathFinder, ARunThatLeavesTheWindowIsCutThere) {
   const OccupancyMap map = Wall();
   const FreeSpace space = SpaceOf(map);
   const UniformBspline curve = Straight({-2.0, 0.0, 0.05}, {6.0, 0.0, 0.05});
   BlockedRun run = OnlyRun(curve, space);
   run.t_out = 7.5;  // at x = 5.5
   WorkBudget budget;
-  WayFinder finder(kUp, {}, &budget);
-  TimedWay way;
+  PathFinder finder(kUp, {}, &budget);
+  TimedPath way;
   budget.Refill(kEnough);
   finder.Begin(1.0);
   ASSERT_EQ(finder.LeadPast(curve, run, space, &way), SearchStatus::kFound);
@@ -183,15 +183,15 @@ TEST(WayFinder, ARunThatLeavesTheWindowIsCutThere) {
   EXPECT_NEAR(way.AtShare(1.0).x(), 6.0, 1e-9);
 }
 
-TEST(WayFinder, OutOfTheWindowTheWayStaysBetweenFloorAndCeiling) {
+TEST(PathFinder, OutOfTheWindowTheWayStaysBetweenFloorAndCeiling) {
   const OccupancyMap map = Wall();
   FreeSpace space = SpaceOf(map);
   space.floor = 0.5;
   space.ceiling = 2.0;
   const UniformBspline curve = Straight({5.0, 0.0, 0.1}, {9.0, 0.0, 2.6});
   WorkBudget budget;
-  WayFinder finder(kUp, {}, &budget);
-  TimedWay way;
+  PathFinder finder(kUp, {}, &budget);
+  TimedPath way;
   budget.Refill(kEnough);
   finder.Begin(1.0);
   const BlockedRun all = {0.0, curve.duration(), false, false};
@@ -203,14 +203,14 @@ TEST(WayFinder, OutOfTheWindowTheWayStaysBetweenFloorAndCeiling) {
   }
 }
 
-TEST(WayFinder, AllSearchesShareTheBudget) {
+TEST(PathFinder, AllSearchesShareTheBudget) {
   const OccupancyMap map = Wall();
   const FreeSpace space = SpaceOf(map);
   const UniformBspline curve = Straight({-2.0, 0.0, 0.05}, {2.0, 0.0, 0.05});
   const BlockedRun run = OnlyRun(curve, space);
   WorkBudget budget;
-  WayFinder finder(kUp, {}, &budget);
-  TimedWay way;
+  PathFinder finder(kUp, {}, &budget);
+  TimedPath way;
   budget.Refill(600);
   finder.Begin(1.0);
   int found = 0;

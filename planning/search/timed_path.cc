@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "planning/search/timed_way.h"
+#include "planning/search/timed_path.h"
 
 #include <algorithm>
 #include <limits>
@@ -26,26 +26,26 @@ double LengthOf(const UniformBspline& curve, double from, double to) {
   return length;
 }
 
-TimedWay::TimedWay() {
+TimedPath::TimedPath() {
   places_.reserve(kPlacesReserve);
   bound_.reserve(kUsualParts);
   detours_.reserve(kUsualParts);
 }
 
-void TimedWay::Clear() {
+void TimedPath::Clear() {
   places_.clear();
   bound_.clear();
   detours_.clear();
   delay_ = 0.0;
 }
 
-void TimedWay::AddCurve(const UniformBspline& curve, double from, double to) {
+void TimedPath::AddCurve(const UniformBspline& curve, double from, double to) {
   for (double t = from; t < to; t += kStep) places_.push_back({t + delay_, curve.Position(t)});
   places_.push_back({to + delay_, curve.Position(to)});
 }
 
-void TimedWay::AddDetour(const UniformBspline& curve, const BlockedRun& run, const GuidePath& path,
-                         double speed) {
+void TimedPath::AddDetour(const UniformBspline& curve, const BlockedRun& run, const GuidePath& path,
+                          double speed) {
   const double length = PathLength(path);
   const double late_before = delay_, from = run.t_in + delay_;
   delay_ +=
@@ -61,7 +61,7 @@ void TimedWay::AddDetour(const UniformBspline& curve, const BlockedRun& run, con
   detours_.push_back({run.t_in, run.t_out, late_before, delay_});
 }
 
-Eigen::Vector3d TimedWay::At(double t) const {
+Eigen::Vector3d TimedPath::At(double t) const {
   const auto later = std::upper_bound(places_.begin(), places_.end(), t,
                                       [](double a, const Place& b) { return a < b.t; });
   if (later == places_.begin()) return places_.front().p_W;
@@ -71,7 +71,7 @@ Eigen::Vector3d TimedWay::At(double t) const {
   return before.p_W + share * (later->p_W - before.p_W);
 }
 
-void TimedWay::Sample(double from, double to, GuidePath* path) const {
+void TimedPath::Sample(double from, double to, GuidePath* path) const {
   path->clear();
   path->push_back(At(from));
   for (const Place& place : places_) {
@@ -80,8 +80,8 @@ void TimedWay::Sample(double from, double to, GuidePath* path) const {
   path->push_back(At(to));
 }
 
-void TimedWay::SampleBeside(const UniformBspline& curve, const BlockedRun& run,
-                            GuidePath* path) const {
+void TimedPath::SampleBeside(const UniformBspline& curve, const BlockedRun& run,
+                             GuidePath* path) const {
   double from = NearestTo(curve.Position(run.t_in)), to = NearestTo(curve.Position(run.t_out));
   if (!(from < to)) {
     const double share = (t_end() - t0()) / curve.duration();
@@ -91,7 +91,7 @@ void TimedWay::SampleBeside(const UniformBspline& curve, const BlockedRun& run,
   Sample(from, to, path);
 }
 
-double TimedWay::TimeOf(double curve_t) const {
+double TimedPath::TimeOf(double curve_t) const {
   double late = 0.0;
   for (const Detour& detour : detours_) {
     if (curve_t <= detour.from) break;
@@ -101,7 +101,7 @@ double TimedWay::TimeOf(double curve_t) const {
   return curve_t + late;
 }
 
-double TimedWay::LengthOf(const BoundPart& part) const {
+double TimedPath::LengthOf(const BoundPart& part) const {
   Eigen::Vector3d last = At(part.from);
   double length = 0.0;
   for (const Place& place : places_) {
@@ -112,8 +112,8 @@ double TimedWay::LengthOf(const BoundPart& part) const {
   return length + (At(part.to) - last).norm();
 }
 
-/// When the way is nearest to a place.
-double TimedWay::NearestTo(const Eigen::Vector3d& p_W) const {
+/// When the path is nearest to a place.
+double TimedPath::NearestTo(const Eigen::Vector3d& p_W) const {
   double t = t0(), nearest2 = (p_W - places_.front().p_W).squaredNorm();
   for (std::size_t i = 1; i < places_.size(); ++i) {
     const Place &a = places_[i - 1], &b = places_[i];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "planning/search/timed_way.h"
+#include "planning/search/timed_path.h"
 
 #include <gtest/gtest.h>
 
@@ -16,18 +16,18 @@ UniformBspline Along(double y, double x_from = -2.0, double x_to = 2.0) {
 }
 
 /// Along `curve`, past its only run by two sides of a triangle whose tip is `high` m beside.
-TimedWay Around(const UniformBspline& curve, const BlockedRun& run, double high, double speed) {
+TimedPath Around(const UniformBspline& curve, const BlockedRun& run, double high, double speed) {
   const Eigen::Vector3d in = curve.Position(run.t_in), out = curve.Position(run.t_out);
-  TimedWay way;
+  TimedPath way;
   way.AddCurve(curve, 0.0, run.t_in);
   way.AddDetour(curve, run, {in, 0.5 * (in + out) + high * Eigen::Vector3d::UnitY(), out}, speed);
   way.AddCurve(curve, run.t_out, curve.t_end());
   return way;
 }
 
-TEST(TimedWay, IsTheCurveWhereItFollowsThat) {
+TEST(TimedPath, IsTheCurveWhereItFollowsThat) {
   const UniformBspline curve = Along(1.5);
-  TimedWay way;
+  TimedPath way;
   EXPECT_FALSE(way.known());
   way.AddCurve(curve, 0.5, curve.t_end());
   ASSERT_TRUE(way.known());
@@ -49,10 +49,10 @@ TEST(TimedWay, IsTheCurveWhereItFollowsThat) {
   EXPECT_FALSE(way.known());
 }
 
-TEST(TimedWay, ADetourTakesTheTimeOfWhatItIsLonger) {
+TEST(TimedPath, ADetourTakesTheTimeOfWhatItIsLonger) {
   const UniformBspline curve = Along(0.0);
   const BlockedRun run = {1.5, 2.5, false, false};
-  const TimedWay way = Around(curve, run, 1.0, 2.0);
+  const TimedPath way = Around(curve, run, 1.0, 2.0);
   const double longer = 2.0 * std::hypot(0.5, 1.0) - 1.0;
   EXPECT_NEAR(way.delay(), longer / 2.0, 1e-6);
   EXPECT_NEAR(way.t_end(), curve.t_end() + way.delay(), 1e-12);
@@ -68,14 +68,14 @@ TEST(TimedWay, ADetourTakesTheTimeOfWhatItIsLonger) {
   EXPECT_NEAR((way.At(3.5 + way.delay()) - curve.Position(3.5)).norm(), 0.0, 1e-6);
   // A shorter path is no earlier.
   const UniformBspline bent = Along(0.0);
-  TimedWay straight;
+  TimedPath straight;
   straight.AddDetour(bent, run, {bent.Position(1.5), bent.Position(2.0)}, 1.0);
   EXPECT_EQ(straight.delay(), 0.0);
 }
 
-TEST(TimedWay, IsSampledBetweenWhereItIsNearestToTwoPlaces) {
+TEST(TimedPath, IsSampledBetweenWhereItIsNearestToTwoPlaces) {
   const UniformBspline curve = Along(0.0);
-  const TimedWay way = Around(curve, {1.5, 2.5, false, false}, 1.0, 1.0);
+  const TimedPath way = Around(curve, {1.5, 2.5, false, false}, 1.0, 1.0);
   GuidePath path;
   way.SampleBeside(Along(0.2, -0.25, 0.25), {0.0, 0.5, false, false}, &path);
   double highest = 0.0;

@@ -13,12 +13,12 @@ namespace touchdown::planning {
 /// Of a curve between two of its times, by 24 chords [m].
 double LengthOf(const UniformBspline& curve, double from, double to);
 
-/// A way for a curve to follow: places in time along another curve, with detours past what blocks that. Times are the
+/// A path for a curve to follow: places in time along another curve, with detours past what blocks that. Times are the
 /// other curve's, delayed by the detours' extra time. A curve has to be bound to the parts that the detours replace.
 /// Allocates only to grow to a high-water mark.
-class TimedWay {
+class TimedPath {
  public:
-  TimedWay();
+  TimedPath();
 
   void Clear();
 
@@ -35,11 +35,11 @@ class TimedWay {
   /// Extra time of the detours [s].
   double delay() const { return delay_; }
 
-  /// Stretches that a curve has to be bound to, in the way's time.
+  /// Stretches that a curve has to be bound to, in the path's time.
   const BoundParts& bound() const { return bound_; }
   void Bind(const BoundPart& part) { bound_.push_back(part); }
 
-  /// Where the way is at a time, clamped to it. @pre known().
+  /// Where the path is at a time, clamped to it. @pre known().
   Eigen::Vector3d At(double t) const;
 
   /// At a share of its time, in [0, 1]. @pre known().
@@ -52,10 +52,10 @@ class TimedWay {
   /// nearest to its end. If these are not in order, at the same shares of time. @pre known().
   void SampleBeside(const UniformBspline& curve, const BlockedRun& run, GuidePath* path) const;
 
-  /// The way's time at a time of the curve that it follows: later by the detours before it.
+  /// The path's time at a time of the curve that it follows: later by the detours before it.
   double TimeOf(double curve_t) const;
 
-  /// Of the way in this part of its time [m]. @pre known().
+  /// Of the path in this part of its time [m]. @pre known().
   double LengthOf(const BoundPart& part) const;
 
  private:
@@ -64,7 +64,7 @@ class TimedWay {
     Eigen::Vector3d p_W;
   };
 
-  // In the time of the curve, and how late the way is before and behind.
+  // In the time of the curve, and how late the path is before and behind.
   struct Detour {
     double from, to;
     double late_before, late_behind;
