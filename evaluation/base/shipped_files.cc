@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where shipped files are: relative to the program first (a build tree or an installation can be
-// moved), then where this build's source tree was.
+// Where shipped files are: relative to the program, so that a build tree or an installation can be moved.
 #include <algorithm>
 #include <filesystem>
 
@@ -36,11 +35,11 @@ fs::path ProgramDirectory() {
   return error ? fs::path(".") : program.parent_path();
 }
 
-// Of the installation that the program belongs to, of the one that it was built against, of the source tree.
+// Of the installation that was named, then of the installation or build tree that the program belongs to.
 std::vector<std::string> Shipped(const char* folder) {
-  std::vector<fs::path> candidates = {ProgramDirectory() / "../share/touchdown" / folder};
+  std::vector<fs::path> candidates;
   if (!ShareDirectory().empty()) candidates.push_back(fs::path(ShareDirectory()) / folder);
-  candidates.push_back(fs::path(TOUCHDOWN_EVALUATION_SOURCE) / folder);
+  candidates.push_back(ProgramDirectory() / "../share/touchdown" / folder);
   return ExistingDirectories(candidates);
 }
 
@@ -94,7 +93,7 @@ std::string DataPath(const std::string& file) {
     const fs::path path = fs::path(directory) / file;
     if (fs::is_regular_file(path, ignored)) return path.string();
   }
-  throw BadInput(fmt::format("{}: is neither installed nor in the source tree.", file));
+  throw BadInput(fmt::format("{}: is neither installed nor in the build tree.", file));
 }
 
 std::string FindScenario(const std::string& name_or_path) {

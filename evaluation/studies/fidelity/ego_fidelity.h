@@ -31,7 +31,7 @@ std::vector<EgoFidelityRow> CompareWithUpstream(const SceneKind& kind,
                                                 const std::vector<EgoSceneResult>& results,
                                                 const std::string& path);
 
-/// Where the measured quantiles were installed, or stand in the source tree. @throws BadInput if they
+/// Where the measured quantiles were installed, or stand in the build tree. @throws BadInput if they
 /// do neither.
 std::string EgoQuantilesPath();
 

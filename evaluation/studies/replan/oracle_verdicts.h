@@ -34,7 +34,7 @@ class OracleVerdicts {
   std::map<Key, std::string> verdicts_;                             // a letter each
 };
 
-/// The book that was installed, or stands in the source tree. @throws BadInput if it does neither.
+/// The book that was installed, or stands in the build tree. @throws BadInput if it does neither.
 OracleVerdicts StandardOracleBook();
 
 }  // namespace touchdown::evaluation
