@@ -7,6 +7,4 @@ RUN apt-get update
 RUN apt-get install -y /tmp/touchdown_*.deb
 RUN cd /tmp && touchdown land straight_turn --plot landing.png --html landing.html
 RUN cd /tmp && python3 -c "import touchdown as td; print(td.run_trial('open').outcome)"
-# For whichever user it is run as: matplotlib keeps what it finds in the home directory.
-ENV HOME=/tmp
 ENTRYPOINT ["touchdown"]
