@@ -1,6 +1,6 @@
 # A Debian 12 with the package that ./deb.sh makes, and a first landing. `./test.sh bare deb` executes the same lines.
 #   docker build -t touchdown .
-#   docker run --rm -v "$PWD/out:/out" -w /out touchdown land straight_turn --html landing.html
+#   docker run --rm --user "$(id -u):$(id -g)" -v "$PWD:/out" -w /out touchdown land straight_turn --html landing.html
 FROM debian:12
 COPY build/touchdown_*.deb /tmp/
 RUN apt-get update

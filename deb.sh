@@ -10,6 +10,9 @@ source "$(dirname "${BASH_SOURCE[0]}")/.ci/setup.sh"
 cd "$TOUCHDOWN_ROOT"
 
 install_tiers build deb
+# The times of files: two builds of the same sources give the same bytes.
+SOURCE_DATE_EPOCH=$(dpkg-parsechangelog -l cmake/debian/changelog -S Timestamp)
+export SOURCE_DATE_EPOCH
 rm -f build/touchdown_*.deb
 say "Building in build/deb"
 cmake --workflow --preset deb

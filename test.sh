@@ -5,7 +5,7 @@
 #   ./test.sh quick     the unit tests: minutes, for who changes the code
 #   ./test.sh deep      sanitizers, another compiler, clang-tidy: an hour or two; parts by name: address, tidy, threads
 #   ./test.sh wasm      the planner in a page: build/wasm/playground.html, and its tests; needs 0.8 GB more
-#   ./test.sh bare      the Debian package in a bare Debian 12, the source in a bare Debian 13; parts by name: deb, source
+#   ./test.sh bare      the Debian package in a bare Debian 12, the source in a bare Debian 12 and 13; parts by name: deb, source
 #   ./test.sh mutants   whether the tests notice changes of what must be right: an hour
 set -euo pipefail
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # shellcheck shell=bash
-# Sourced by demo.sh and test.sh: installs what is missing and builds.
+# Sourced by the scripts at the top and in .ci/: installs what is missing and builds.
 
 TOUCHDOWN_ROOT=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 export TOUCHDOWN_ROOT

@@ -21,7 +21,9 @@ set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
 
 set(CPACK_PACKAGE_NAME touchdown)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
-set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
+# What it depends on is of the distribution that it is made on.
+cmake_host_system_information(RESULT distribution QUERY DISTRIB_INFO)
+set(CPACK_DEBIAN_PACKAGE_RELEASE "1~${distribution_ID}${distribution_VERSION_ID}")
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
 # The maintainer is who entered the version in Debian's changelog.
@@ -42,8 +44,8 @@ string(REGEX REPLACE "^.*cpython-3([0-9]+).*$" "\\1" minor "${suffix}")
 math(EXPR next "${minor} + 1")
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_DEPENDS
-    "python3 (>= 3.${minor}), python3 (<< 3.${next}), python3-matplotlib, python3-numpy")
-set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "python3-pandas, python3-scipy, python3-statsmodels, python3-tqdm")
+    "python3 (>= 3.${minor}), python3 (<< 3.${next}), python3-matplotlib, python3-numpy, python3-pandas")
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "python3-scipy, python3-statsmodels, python3-tqdm")
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "ffmpeg")  # for videos alone, and 160 packages
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA

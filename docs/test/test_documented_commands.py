@@ -12,7 +12,7 @@ import tempfile
 from pathlib import Path
 
 import pytest
-from documents import ROOT, Document, documents
+from documents import ROOT, SHELL, Document, documents
 
 STAND_IN = Path(__file__).resolve().parent / "stand_in.py"
 CALLED = ["demo.sh", "deb.sh", "test.sh", "python.sh", "my_env/bin/python", "build/release/bin/touchdown", "build/release/estimation/estimation_test",
@@ -33,7 +33,7 @@ def written():
 
 
 def make_folder(folder):
-    """The repository as the commands see it: sources to read, stand-ins to call, cp, and ffmpeg for videos."""
+    """The repository as the commands see it: sources to read, stand-ins to call, cp, id, and ffmpeg for videos."""
     folder.mkdir(parents=True, exist_ok=True)
     for name in ("sim", "evaluation"):
         (folder / name).symlink_to(ROOT / name)
@@ -41,7 +41,7 @@ def make_folder(folder):
     for name in CALLED:
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).symlink_to(STAND_IN)
-    for name in ("cp", "ffmpeg"):
+    for name in ("cp", "ffmpeg", "id"):
         (folder / "bin" / name).symlink_to(shutil.which(name) or f"/usr/bin/{name}")
     return folder
 
@@ -127,13 +127,14 @@ def test_the_lines_of_pandas_read_a_record(folder):
 
 
 def test_no_command_hides_where_it_is_not_collected():
-    starts = re.compile(r"\s*(\$ )?(build/|touchdown [a-z]|\./\w+\.sh|cmake -|cmake --|ctest|apt|git )")
+    starts = re.compile(r"\s*(\$ )?(build/|touchdown [a-z]|\./\w+\.sh|cmake -|cmake --|ctest|apt|docker |git )")
     hidden = []
     for document in written():
         other = [(n, line) for n, line in document.prose if line.startswith("    ")]
         for block in document.blocks:
-            if block.language not in ("sh", "bash", "text"):  # text: what was printed
-                other += enumerate(block.text.split("\n"), block.line)
+            lines = list(enumerate(block.text.split("\n"), block.line))
+            if block.language not in SHELL:  # text: what was printed, of which the first line tells
+                other += lines[:1] if block.language == "text" else lines
         hidden += [f"{document.name}:{n}: {line}" for n, line in other if starts.match(line)]
     assert not hidden, "put these into ```sh blocks:\n" + "\n".join(hidden)
 

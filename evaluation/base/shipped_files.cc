@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where shipped files are. The program's own place is searched first, because a build tree or an
-// installation can be moved; then this build's source tree.
+// Where shipped files are: relative to the program, so that a build tree or an installation can be moved.
 #include <algorithm>
 #include <filesystem>
 
@@ -36,11 +35,11 @@ fs::path ProgramDirectory() {
   return error ? fs::path(".") : program.parent_path();
 }
 
-// Of the program's installation, of the installation that it was built against, and of the source tree.
+// Of the installation that was named, then of the installation or build tree that the program belongs to.
 std::vector<std::string> Shipped(const char* folder) {
-  std::vector<fs::path> candidates = {ProgramDirectory() / "../share/touchdown" / folder};
+  std::vector<fs::path> candidates;
   if (!ShareDirectory().empty()) candidates.push_back(fs::path(ShareDirectory()) / folder);
-  candidates.push_back(fs::path(TOUCHDOWN_EVALUATION_SOURCE) / folder);
+  candidates.push_back(ProgramDirectory() / "../share/touchdown" / folder);
   return ExistingDirectories(candidates);
 }
 
@@ -94,7 +93,7 @@ std::string DataPath(const std::string& file) {
     const fs::path path = fs::path(directory) / file;
     if (fs::is_regular_file(path, ignored)) return path.string();
   }
-  throw BadInput(fmt::format("{}: is neither installed nor in the source tree.", file));
+  throw BadInput(fmt::format("{}: is neither installed nor in the build tree.", file));
 }
 
 std::string FindScenario(const std::string& name_or_path) {

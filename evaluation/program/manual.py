@@ -97,6 +97,8 @@ def section_of(program, words):
 def manual(program, version):
     lines = help_of(program, [])
     commands = [name for section, name, _ in entries(lines) if section == "Subcommands"]
+    if "land" not in commands:
+        sys.exit(f"manual.py: {program} --help is laid out in another way: these are its commands: {commands}")
     summary = lines[0][0].lower() + lines[0][1:].rstrip(".")
     page = [f'.TH TOUCHDOWN 1 "" "touchdown {version}" "User Commands"', ".SH NAME", rf"touchdown \- {roff(summary)}"]
     page += BEFORE.strip().splitlines()

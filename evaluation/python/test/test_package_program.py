@@ -90,7 +90,10 @@ def test_what_is_shipped_is_told_to_the_module(place, tmp_path, monkeypatch):
     _program.use_share()
     (package / "share/touchdown").mkdir(parents=True)
     _program.use_share()
-    assert told == [str(tmp_path / "p/share/touchdown"), str(package / "share/touchdown")]
+    (place("build/python/touchdown").parents[1] / "share/touchdown").mkdir(parents=True)
+    _program.use_share()
+    places = (tmp_path / "p", package, tmp_path / "build")
+    assert told == [str(folder / "share/touchdown") for folder in places]
 
 
 def test_what_it_prints_is_returned(run):

@@ -81,8 +81,8 @@ def program_path() -> Path:
 
 
 def share_path() -> Optional[Path]:
-    """The folder of scenarios, studies and data that was installed with the package; None in a build tree."""
-    for place in (PACKAGE, _prefix()):
+    """The folder of scenarios, studies and data: of the package, or the prefix or build tree that it is in."""
+    for place in (PACKAGE, _prefix(), PACKAGE.parents[1]):
         if place and (place / "share" / "touchdown").is_dir():
             return place / "share" / "touchdown"
     return None

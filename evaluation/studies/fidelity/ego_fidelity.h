@@ -30,7 +30,7 @@ std::vector<EgoFidelityRow> CompareWithUpstream(const SceneKind& kind,
                                                 const std::vector<EgoSceneResult>& results,
                                                 const std::string& path);
 
-/// Where the measured quantiles are: installed, or in the source tree. @throws BadInput if they are in neither.
+/// Where the measured quantiles are: installed, or in the build tree. @throws BadInput if they are in neither.
 std::string EgoQuantilesPath();
 
 /// Every judged row meets its rule.

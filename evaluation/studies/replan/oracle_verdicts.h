@@ -34,7 +34,7 @@ class OracleVerdicts {
   std::map<Key, std::string> verdicts_;                             // a letter each
 };
 
-/// The verdicts that are installed, or in the source tree. @throws BadInput if they are in neither.
+/// The verdicts that are installed, or in the build tree. @throws BadInput if they are in neither.
 OracleVerdicts StandardOracleVerdicts();
 
 }  // namespace touchdown::evaluation

@@ -10,8 +10,8 @@ namespace touchdown::evaluation {
 bool UseShare(const std::string& directory);
 
 /// Path of the scenario file called `name_or_path`: an existing path, or the name of a shipped one
-/// with or without .yaml. Looked up first in the installation that the program belongs to, last in the
-/// source tree. @throws BadInput naming what is there.
+/// with or without .yaml, of the installation or the build tree that the program belongs to.
+/// @throws BadInput naming what is there.
 std::string FindScenario(const std::string& name_or_path);
 
 /// Names of the shipped scenarios, sorted.
@@ -24,7 +24,7 @@ std::vector<std::string> ListStudyFiles();
 /// Directories that hold the Python package touchdown_report, first hit first.
 std::vector<std::string> PythonDirectories();
 
-/// The path of a file of measured data. @throws BadInput if it is neither installed nor in the source tree.
+/// The path of a file of measured data. @throws BadInput if it is neither installed nor in the build tree.
 std::string DataPath(const std::string& file);
 
 }  // namespace touchdown::evaluation
