@@ -224,7 +224,7 @@ TEST(SensingFlight, EveryFaultTakesEffectAndFastFlightsLandAllTheSame) {
   for (const Overrides& fault : std::vector<Overrides>{{"gps.outage=[2, 4]"},
                                                        {"gps.outliers=0.1"},
                                                        {"camera.drop=0.3"},
-                                                       {"camera.outage=[1, 2]"},
+                                                       {"camera.outage=[4, 5]"},
                                                        {"camera.occlusion=0.4"},
                                                        {"camera.occlusion=0.5"},
                                                        {"camera.latency_ms=60"},
