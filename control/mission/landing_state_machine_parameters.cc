@@ -17,11 +17,12 @@ std::string_view ToString(MissionMode mode) {
 }
 
 std::string_view ToString(TransitionReason reason) {
-  static constexpr std::array<std::string_view, 20> kNames = {
+  static constexpr std::array<std::string_view, 21> kNames = {
       "none",      "pad_converged", "align_timeout", "above_pad",         "arriving",
       "contact",   "pad_lost",      "tags_lost",     "error_too_large",   "too_fast",
       "gust",      "plan_failed",   "no_contact",    "climb_complete",    "climb_timeout",
-      "recovered", "invalid_input", "emergency",     "emergency_cleared", "own_state_lost"};
+      "recovered", "invalid_input", "emergency",     "emergency_cleared", "own_state_lost",
+      "depth_lost"};
   return kNames.at(static_cast<std::size_t>(reason));
 }
 
@@ -98,6 +99,7 @@ void Validate(const MissionParameters& p) {
       {"pad_timeout", p.pad_timeout},
       {"plan_timeout", p.plan_timeout},
       {"climb_timeout", p.climb_timeout},
+      {"depth_timeout", p.depth_timeout},
       {"climb_tolerance", p.climb_tolerance},
       {"emergency_time", p.emergency_time},
   }};

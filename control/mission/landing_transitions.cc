@@ -88,6 +88,9 @@ Transition FromTracking(const MissionState& s, const MissionInputs& in, const Co
   if (LastedLonger(s.pad_missing_since, s.t, p.pad_timeout)) {
     return {MissionMode::kHold, TransitionReason::kPadLost};
   }
+  if (in.depth_age > p.depth_timeout) {
+    return {MissionMode::kHold, TransitionReason::kDepthLost};
+  }
   if (in.plan_failed_for > p.plan_timeout) {
     return {MissionMode::kHold, TransitionReason::kPlanFailed};
   }

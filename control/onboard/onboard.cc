@@ -68,7 +68,8 @@ struct Onboard::Parts {
   }
 
   void Mission(double t) {
-    pilot->StepMission(senses.own(), senses.pad(), FootForceAt(t), 1.0 / options.mission_rate);
+    pilot->StepMission(senses.own(), senses.pad(), senses.DepthAge(t), FootForceAt(t),
+                       1.0 / options.mission_rate);
   }
 
   void Plan(double t) {

@@ -96,8 +96,8 @@ Pilot::Pilot(const OnboardOptions& options, const OnboardParts& parts,
   heading_ = heading_ahead_ = yaw_.yaw;
 }
 
-void Pilot::StepMission(const OwnState& own, const estimation::PadFilter& filter, double foot_force,
-                        double dt) {
+void Pilot::StepMission(const OwnState& own, const estimation::PadFilter& filter, double depth_age,
+                        double foot_force, double dt) {
   const estimation::VehicleState& vehicle = own.now();
   const double t = vehicle.t;
   own_position_sigma_ = own.PositionSigma();
@@ -131,6 +131,8 @@ void Pilot::StepMission(const OwnState& own, const estimation::PadFilter& filter
   inputs.own_fresh = status == estimation::OwnStatus::kGood;
   inputs.own_usable = inputs.own_fresh || status == estimation::OwnStatus::kOutage;
   own_usable_ = inputs.own_usable;
+  inputs.depth_age = depth_age;
+  sees_ = depth_age <= parameters_.depth_timeout;
   inputs.foot_force = foot_force_ = foot_force;
   inputs.has_plan = has_plan_;
   inputs.at_goal = at_goal_;
@@ -257,9 +259,9 @@ bool Pilot::WantsPlan(const estimation::PadFilter& filter, double t) const {
   if (mission_.guidance == Guidance::kFollowPad || mission_.guidance == Guidance::kTouchDown) {
     return true;
   }
-  // Hold ends with a plan to a known pad, so one is tried. Without the pad, or without a usable own
-  // state, the vehicle rests.
-  return mission_.mode == MissionMode::kHold && own_usable_ && IsSureOfTarget(filter, t);
+  // Hold ends with a plan to a known pad, so one is tried. Without the pad, a usable own state or
+  // depth images, the vehicle rests.
+  return mission_.mode == MissionMode::kHold && own_usable_ && sees_ && IsSureOfTarget(filter, t);
 }
 
 double Pilot::RestClimb() const {

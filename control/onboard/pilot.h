@@ -45,9 +45,10 @@ class Pilot {
         const estimation::VehicleState& start, const estimation::Commands& start_thrusts,
         const planning::OccupancyMap& map);
 
-  /// Mission and heading, by what the vehicle knows of itself. Call at a fixed rate.
-  void StepMission(const OwnState& own, const estimation::PadFilter& filter, double foot_force,
-                   double dt);
+  /// Mission and heading, by what the vehicle knows of itself. `depth_age`: of the last depth image [s]. Call at a
+  /// fixed rate.
+  void StepMission(const OwnState& own, const estimation::PadFilter& filter, double depth_age,
+                   double foot_force, double dt);
 
   /// One replanning step while flying, to the pad or to rest as the mission wants. nullptr while
   /// hovering or disarmed, and where the planner had nothing to do. Call at replan_rate, or at
@@ -124,6 +125,7 @@ class Pilot {
   bool leans_ = false;                     ///< the heading is chosen by the wind
   OnboardReplan replan_;
   bool own_usable_ = true;  ///< the own state is good enough to fly to the pad by
+  bool sees_ = true;        ///< depth images come
   bool has_plan_ = false;
   bool idle_ = false;
   bool at_goal_ = false;                           ///< the last step made no plan: the goal is near

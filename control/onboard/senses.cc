@@ -126,6 +126,11 @@ Taken Senses::Take(const estimation::DepthImage& image) {
   return Taken::kUsed;
 }
 
+double Senses::DepthAge(double t) const {
+  const double latest = images_.latest();
+  return std::isfinite(latest) ? std::max(0.0, t - latest) : 0.0;
+}
+
 // Where the pad was at `stamp`, with its uncertainty of then and of today.
 planning::PadOutline Senses::Outline(double t, double stamp) const {
   if (pad_is_obstacle_ || !pad_.initialized()) return {};

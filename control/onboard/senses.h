@@ -40,6 +40,9 @@ class Senses {
   void Begin();
   void Advance(double t) { own_.Advance(t); }
 
+  /// Since the stamp of the last depth image [s]; 0 while none has come: then nothing is known that could be lost.
+  double DepthAge(double t) const;
+
   const OwnState& own() const { return own_; }
   const estimation::PadFilter& pad() const { return pad_; }
   const planning::OccupancyMap& map() const { return map_; }

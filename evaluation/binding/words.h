@@ -90,7 +90,7 @@ TOUCHDOWN_WORDS(planning::CellState, "CellState", {"unknown", "free", "occupied"
 TOUCHDOWN_WORDS(control::MissionMode, "MissionMode",
                 WordsUpTo(touchdown::control::MissionMode::kEmergencyStop));
 TOUCHDOWN_WORDS(control::TransitionReason, "TransitionReason",
-                WordsUpTo(touchdown::control::TransitionReason::kOwnStateLost));
+                WordsUpTo(touchdown::control::TransitionReason::kDepthLost));
 TOUCHDOWN_WORDS(control::Gate, "Gate", WordsUpTo(touchdown::control::Gate::kGust));
 TOUCHDOWN_WORDS(control::DescentHold, "DescentHold",
                 WordsUpTo(touchdown::control::DescentHold::kAbove));

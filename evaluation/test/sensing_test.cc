@@ -248,6 +248,10 @@ TEST(SensingFlight, WithoutADepthCameraTheVehicleComesToRestAndTouchesNothing) {
     TrialRecord record;
     const TrialResult result = RunTrial(scenario, seed, StandardRegistries(), &record);
     EXPECT_EQ(result.outcome, Outcome::kTimeout) << "seed " << seed << ": " << result.detail;
+    EXPECT_TRUE(
+        std::any_of(record.events.begin(), record.events.end(),
+                    [](const RecordEvent& event) { return event.text == "hold (depth_lost)"; }))
+        << "seed " << seed;
     ASSERT_TRUE(result.safety);
     EXPECT_EQ(result.safety->uncertified_steps, 0) << "seed " << seed;
     EXPECT_GT(*result.min_clearance_m, 0.0) << "seed " << seed;

@@ -21,7 +21,7 @@ ReplanStatus = Literal["planned", "kept", "braking", "climbing", "escaping", "ho
 Role = Literal["cost", "rows"]
 SolveStatus = Literal["converged", "iteration_limit", "time_limit", "stopped", "unconfirmed", "saddle", "unbounded", "infeasible", "evaluation_failed", "numerical_failure"]
 Taken = Literal["used", "waiting", "gated", "empty", "ignored", "doubled", "too_old", "invalid", "unasked"]
-TransitionReason = Literal["none", "pad_converged", "align_timeout", "above_pad", "arriving", "contact", "pad_lost", "tags_lost", "error_too_large", "too_fast", "gust", "plan_failed", "no_contact", "climb_complete", "climb_timeout", "recovered", "invalid_input", "emergency", "emergency_cleared", "own_state_lost"]
+TransitionReason = Literal["none", "pad_converged", "align_timeout", "above_pad", "arriving", "contact", "pad_lost", "tags_lost", "error_too_large", "too_fast", "gust", "plan_failed", "no_contact", "climb_complete", "climb_timeout", "recovered", "invalid_input", "emergency", "emergency_cleared", "own_state_lost", "depth_lost"]
 
 __version__: str
 

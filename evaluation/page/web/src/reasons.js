@@ -20,4 +20,5 @@ export const REASONS = {
   emergency: "the emergency flag is set",
   emergency_cleared: "the emergency flag is cleared",
   own_state_lost: "the own state was unusable for too long",
+  depth_lost: "no depth image came for too long",
 };

@@ -11,6 +11,7 @@
 //   tracking       hold            pad_lost           no converged pad for over pad_timeout
 //   tracking       hold            plan_failed        no plan for over plan_timeout
 //   tracking       hold            own_state_lost     own state not usable for over own_timeout
+//   tracking       hold            depth_lost         no depth image for over depth_timeout
 //   (lands)        disarmed        contact            feet at the deck with a force for contact_time,
 //                                                     breaks up to contact_break allowed, and at last
 //                                                     for contact_rest without a break
@@ -106,6 +107,7 @@ enum class TransitionReason {
   kEmergency,
   kEmergencyCleared,
   kOwnStateLost,
+  kDepthLost,
 };
 std::string_view ToString(TransitionReason reason);
 
@@ -155,6 +157,7 @@ struct MissionInputs {
   double tag_age = std::numeric_limits<double>::infinity();  ///< of the last sighting [s]
   bool own_fresh = true;    ///< own state runs on fresh measurements, else it is dead reckoning
   bool own_usable = true;   ///< own state is good enough to fly to the pad by
+  double depth_age = 0.0;   ///< of the last depth image [s]; 0 while none has come
   double foot_force = 0.0;  ///< sum over the feet [N]
   bool has_plan = false;    ///< a certified plan exists
   bool lands =
@@ -231,6 +234,7 @@ struct MissionParameters {
   double climb_tolerance = 0.25;  ///< of the follow height for climb_complete [m]
   double invalid_timeout = 0.2;   ///< [s]
   double own_timeout = 0.2;       ///< [s]
+  double depth_timeout = 2.0;     ///< [s]
   double own_patience = 2.0;      ///< dead reckoning closes the gate for no longer [s]
   double emergency_time = 1.0;    ///< [s]
 };
