@@ -164,7 +164,7 @@ TEST_F(MapFile, AMapThatCannotBeUsedIsBadInput) {
   octomap::OcTree coarse(99.97);
   coarse.updateNode(1.0, 1.0, 1.0, true);
   ASSERT_TRUE(coarse.write(Path("coarse.ot")));
-  refuses(Path("coarse.ot"), "more than five million leaves; crop it");
+  refuses(Path("coarse.ot"), "more than five million leaves; crop the file");
 }
 
 constexpr const char* kBeliefs = TOUCHDOWN_SOURCE_DIR "/docs/examples/worlds/";

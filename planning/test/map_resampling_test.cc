@@ -149,7 +149,7 @@ TEST(MapResampling, RefusesWhatWouldTakeTooMuch) {
     map.Read(file);
     FAIL() << "it was read";
   } catch (const std::invalid_argument& error) {
-    EXPECT_THAT(error.what(), HasSubstr("more than five million leaves; crop it"));
+    EXPECT_THAT(error.what(), HasSubstr("more than five million leaves; crop the file"));
   }
   EXPECT_EQ(map.size(), 0u);
 }

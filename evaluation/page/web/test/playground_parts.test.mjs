@@ -299,7 +299,7 @@ test("what came out is told in words", () => {
   const answer = { status: "planned", reason: "none", sentences: ["A new plan to the pad is flown."], passed: true, pair: { curve: line(3, 6), t_stop: 3.4, stop: line(3.4, 1) } };
   near(lengthOf(curveOf(answer.pair.curve)), 6, 1e-6);
   assert.deepEqual(headlineOf(answer), { tone: "good", title: "Planned: contact in 2.00 s.", text: "If no newer plan comes, the vehicle stops from 0.40 s on. That stop is certified, too." });
-  assert.match(headlineOf({ ...answer, pair: { ...answer.pair, t_stop: null, stop: null } }).text, /landing is its own stop/);
+  assert.match(headlineOf({ ...answer, pair: { ...answer.pair, t_stop: null, stop: null } }).text, /needs no stop/);
   const held = { status: "holding", reason: "goal_blocked", sentences: ["It stays.", "The end is blocked."], passed: true, pair: { curve: line(0, 0) } };
   assert.deepEqual(headlineOf(held), { tone: "warn", title: "The end is blocked.", text: "It stays." });
   assert.equal(headlineOf({ ...held, status: "unsafe", passed: false }).tone, "bad");
