@@ -55,7 +55,7 @@ void Validate(const MissionParameters& p) {
     const char* name;
     double value;
   };
-  const std::array<Named, 45> positive = {{
+  const std::array<Named, 46> positive = {{
       {"lean_max", p.lean_max},
       {"follow_height", p.follow_height},
       {"landing_distance", p.landing_distance},
