@@ -176,9 +176,9 @@ class Trial {
     }
     const control::MissionOutputs& mission = status.mission;
     if (status.mission_step && mission.reason != control::TransitionReason::kNone) {
-      Note(t, "mode",
-           fmt::format("{} ({})", control::ToString(mission.mode),
-                       control::ToString(mission.reason)));
+      mode_ = fmt::format("{} ({})", control::ToString(mission.mode),
+                          control::ToString(mission.reason));
+      Note(t, "mode", mode_);
     }
     if (status.mission_step && mission.gate != gate_) {
       gate_ = mission.gate;
@@ -355,12 +355,9 @@ class Trial {
         result_.detail += " Reason: " + no_plan_reason_ + ".";
       }
       if (result_.outcome == Outcome::kStood) {
-        result_.cause = no_plan_reason_.empty()
-                            ? std::string(control::ToString(onboard_.status().mission.mode))
-                            : no_plan_reason_;
+        result_.cause = no_plan_reason_.empty() ? mode_ : no_plan_reason_;
       }
-      result_.detail +=
-          fmt::format(" Mode: {}.", control::ToString(onboard_.status().mission.mode));
+      result_.detail += fmt::format(" Mode: {}.", mode_);
     }
     metrics_.Fill(&result_);
     if (!world_.config().obstacles.empty()) {
@@ -430,6 +427,7 @@ class Trial {
   Metrics metrics_;
   estimation::OwnStatus own_status_ = estimation::OwnStatus::kGood;
   control::DescentHold descent_hold_ = control::DescentHold::kNone;
+  std::string mode_ = "hovering";  // of the mission, and why
   control::Gate gate_ = control::Gate::kNoPad;
   SlidingMean through_air_;
   estimation::SampleClock sample_clock_;

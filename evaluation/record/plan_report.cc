@@ -12,6 +12,21 @@ std::string Vector(const Eigen::Vector3d& v) {
   return fmt::format("[{:.3f}, {:.3f}, {:.3f}]", v.x(), v.y(), v.z());
 }
 
+// What is flown at the start of the step.
+std::string CommittedBefore(const RecordPlan& asked, double t_start) {
+  const planning::FlightPair& pair = asked.before.next;
+  if (pair.t_stop <= t_start) {
+    return fmt::format("  committed  a stored stop, until t = {:.3f} s\n", pair.stop.t_end());
+  }
+  std::string text = fmt::format("  committed  {} of {:.2f} s, until t = {:.3f} s",
+                                 asked.before.planned ? "a plan to the pad" : "a curve to rest",
+                                 pair.curve.duration(), pair.curve.t_end());
+  if (pair.t_stop < pair.curve.t_end()) {
+    text += fmt::format("; its stop begins at t = {:.3f} s", pair.t_stop);
+  }
+  return text + "\n";
+}
+
 std::string QuestionText(const SolvedStep& solved) {
   const RecordPlan& asked = solved.recorded;
   const planning::ReplanInput& input = asked.request.input;
@@ -35,10 +50,7 @@ std::string QuestionText(const SolvedStep& solved) {
                   end.height, end.sink_rate, end.height_floor);
     if (end.at_rest) text += "             without the pad's velocity\n";
   }
-  text += fmt::format("  committed  {} of {:.2f} s, until t = {:.3f} s\n",
-                      asked.before.planned ? "a plan to the pad" : "a curve to rest",
-                      asked.before.next.curve.duration(), asked.before.next.curve.t_end());
-  return text;
+  return text + CommittedBefore(asked, input.t_start);
 }
 
 std::string RoundText(const planning::RoundLog& round, int number) {

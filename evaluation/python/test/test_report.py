@@ -141,7 +141,7 @@ def test_the_mean_wind_is_an_arrow_with_its_speed(record_path, tmp_path):
     arrow, words = axes.texts
     (dx, dy) = axes.transAxes.transform(arrow.xy) - axes.transAxes.transform(arrow.xyann)
     assert np.isclose(dx / dy, -0.75) and dx < 0.0
-    assert words.get_text() == "mean wind 5.0 m/s"
+    assert words.get_text() == "flight's mean wind 5.0 m/s"
     landing.draw_wind(axes, Record(record_path))
     assert len(axes.texts) == 2  # still air: nothing is drawn
     landing.plt.close(figure)

@@ -132,7 +132,7 @@ def draw_wind(axes, record):
         zorder=7,
     )
     axes.annotate(
-        f"mean wind {speed:.1f} m/s",
+        f"flight's mean wind {speed:.1f} m/s",
         place,
         xycoords="axes fraction",
         xytext=(0.0, -0.5 * WIND_ARROW - 4.0),

@@ -142,7 +142,7 @@ def draw_view(axes, plan, down):
         axes.quiver(
             *(p[:, 0], p[:, down], v[:, 0], v[:, down]),
             **{"color": PAIR, "angles": "xy", "scale_units": "xy", "scale": 2.5, "width": 0.003},
-            label="pairs {p, v}",
+            label="half-spaces {p, v}",
             zorder=4,
         )
     if plan["input"]["pad"]:
@@ -207,7 +207,7 @@ def draw(plan, path):
         reason = "" if result["reason"] == "none" else f" ({result['reason']})"
         figure.suptitle(
             f"{plan['source']}, backend {plan['backend']}: {result['status']}{reason}, "
-            f"{result['solves']} solves, {result['pairs']} pairs",
+            f"{result['solves']} solves",
             **{"x": 0.01, "ha": "left", "fontsize": 11, "fontweight": "bold"},
         )
         figure.savefig(path, dpi=150)

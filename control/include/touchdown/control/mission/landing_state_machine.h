@@ -234,7 +234,7 @@ struct MissionParameters {
   double climb_tolerance = 0.25;  ///< of the follow height for climb_complete [m]
   double invalid_timeout = 0.2;   ///< [s]
   double own_timeout = 0.2;       ///< [s]
-  double depth_timeout = 2.0;     ///< [s]
+  double depth_timeout = 5.0;     ///< [s]
   double own_patience = 2.0;      ///< dead reckoning closes the gate for no longer [s]
   double emergency_time = 1.0;    ///< [s]
 };
