@@ -139,7 +139,7 @@ export class Panel {
       gateWords(gate?.text ?? "no_pad") + (gate ? `, since ${gate.t.toFixed(2)} s` : ""),
       descentWords(descent),
       ...place,
-      b < 0 ? "not yet" : `${Math.hypot(pad_believed.px[b] - aim.x, pad_believed.py[b] - aim.y).toFixed(2)} m off, 1 σ ${(doubt / pad.sigmas).toFixed(2)} m${doubt > pad.sure ? "; too uncertain to take its cells for the pad" : ""}`,
+      b < 0 ? "not yet" : `${Math.hypot(pad_believed.px[b] - aim.x, pad_believed.py[b] - aim.y).toFixed(2)} m off, 1 σ ${(doubt / pad.sigmas).toFixed(2)} m${doubt > pad.sure ? "; too uncertain to tell its cells from obstacles" : ""}`,
       blows,
     ]);
   }

@@ -20,7 +20,7 @@ function figuresOf(flight) {
   return [
     [flight.goal ? "To the goal" : "To the pad", "m", [
       [vehicle.t, [
-        ["beside", BLUE, each((i) => Math.hypot(vehicle.px[i] - aims[i].x, vehicle.py[i] - aims[i].y))],
+        ["horizontal", BLUE, each((i) => Math.hypot(vehicle.px[i] - aims[i].x, vehicle.py[i] - aims[i].y))],
         flight.goal ? ["above", VERMILLION, each((i) => vehicle.pz[i] - aims[i].z)] : ["feet above", VERMILLION, each((i) => vehicle.pz[i] - aims[i].z - model.foot_depth)],
       ]],
     ]],
