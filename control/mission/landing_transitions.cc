@@ -114,6 +114,7 @@ Transition FromGoAround(const MissionState& s, const MissionInputs& in, const Co
   if (!high && !timeout) return {s.mode, TransitionReason::kNone};
   if (!in.own_usable) return {MissionMode::kHold, TransitionReason::kOwnStateLost};
   if (!now.pad_good) return {MissionMode::kHold, TransitionReason::kPadLost};
+  if (in.depth_age > p.depth_timeout) return {MissionMode::kHold, TransitionReason::kDepthLost};
   return {MissionMode::kTracking,
           high ? TransitionReason::kClimbComplete : TransitionReason::kClimbTimeout};
 }

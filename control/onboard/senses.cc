@@ -52,6 +52,7 @@ Senses::Senses(const OnboardOptions& options, std::optional<planning::Persistent
       pad_is_obstacle_(options.to_goal) {}
 
 void Senses::Begin() {
+  depth_t_ = own_.now().t;  // a stamp of a clock that was wrong before counts for nothing
   map_.Recentre(own_.now().p_WB);
   memory_.Refill(&map_);
   map_.MarkFree(own_.now().p_WB, start_free_);
@@ -123,12 +124,8 @@ Taken Senses::Take(const estimation::DepthImage& image) {
     map_.ExplainDoubts([&](double at) { return Outline(t, at); });
   }
   images_.Add(image.t);
+  depth_t_ = std::max(depth_t_, image.t);
   return Taken::kUsed;
-}
-
-double Senses::DepthAge(double t) const {
-  const double latest = images_.latest();
-  return std::isfinite(latest) ? std::max(0.0, t - latest) : 0.0;
 }
 
 // Where the pad was at `stamp`, with its uncertainty of then and of today.

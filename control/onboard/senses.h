@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <vector>
 
@@ -40,8 +41,8 @@ class Senses {
   void Begin();
   void Advance(double t) { own_.Advance(t); }
 
-  /// Since the stamp of the last depth image [s]; 0 while none has come: then nothing is known that could be lost.
-  double DepthAge(double t) const;
+  /// Since the stamp of the last depth image, or since Begin if none has come [s].
+  double DepthAge(double t) const { return std::max(0.0, t - depth_t_); }
 
   const OwnState& own() const { return own_; }
   const estimation::PadFilter& pad() const { return pad_; }
@@ -64,6 +65,7 @@ class Senses {
   double start_free_;
   bool pad_is_obstacle_;  // the goal is another than the pad
   Stamps fixes_, sightings_, pad_images_, images_;
+  double depth_t_ = 0.0;  // of the last depth image, or of Begin [s]
   PadSearch look_;
   estimation::DepthFrame frame_;
   std::vector<estimation::PadArrival>* pad_log_ = nullptr;

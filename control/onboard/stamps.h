@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <limits>
 
 namespace touchdown::control {
 
@@ -18,18 +17,12 @@ class Stamps {
     const auto end = stamps_.begin() + static_cast<std::ptrdiff_t>(std::min(count_, kKept));
     return std::find(stamps_.begin(), end, t) != end;
   }
-  void Add(double t) {
-    stamps_[count_++ % kKept] = t;
-    latest_ = std::max(latest_, t);
-  }
-  /// The latest one; -infinity without any.
-  double latest() const { return latest_; }
+  void Add(double t) { stamps_[count_++ % kKept] = t; }
 
  private:
   static constexpr std::size_t kKept = 64;
   std::array<double, kKept> stamps_{};
   std::size_t count_ = 0;
-  double latest_ = -std::numeric_limits<double>::infinity();
 };
 
 }  // namespace touchdown::control

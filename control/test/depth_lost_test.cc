@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The mission when no depth images come any more.
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "control/test/mission_fixture.h"
@@ -40,6 +42,22 @@ TEST(DepthLost, ALandingGoesOn) {
   mission.in.depth_age = 10.0;
   mission.DescendTo(0.3);
   EXPECT_TRUE(mission.outputs.committed);
+}
+
+TEST(DepthLost, AGoAroundEndsInAHold) {
+  Mission mission;
+  mission.DescendTo(0.8);
+  mission.in.depth_age = 10.0;
+  mission.in.horizontal_distance = 2.0;  // blown off
+  ASSERT_NE(mission.RunUntil(MissionMode::kGoAround), TransitionReason::kNone);
+  EXPECT_EQ(mission.RunUntil(MissionMode::kHold), TransitionReason::kDepthLost);
+}
+
+TEST(DepthLost, AnAgeThatIsNoNumberIsInvalid) {
+  Mission mission;
+  ASSERT_EQ(mission.RunUntil(MissionMode::kTracking), TransitionReason::kPadConverged);
+  mission.in.depth_age = std::nan("");
+  EXPECT_EQ(mission.RunUntil(MissionMode::kHold), TransitionReason::kInvalidInput);
 }
 
 TEST(DepthLost, ItHasAName) { EXPECT_EQ(ToString(TransitionReason::kDepthLost), "depth_lost"); }

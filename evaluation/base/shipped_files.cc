@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where shipped files are: relative to the program first, because a build tree or an installation can be moved.
+// Where shipped files are: in the installation that was named, or relative to the program, which can be moved.
 #include <algorithm>
 #include <filesystem>
 
@@ -35,13 +35,11 @@ fs::path ProgramDirectory() {
   return error ? fs::path(".") : program.parent_path();
 }
 
-// Of the installation that was named, of the installation or build tree that the program belongs to, then of the
-// library's build.
+// Of the installation that was named, then of the installation or build tree that the program belongs to.
 std::vector<std::string> Shipped(const char* folder) {
   std::vector<fs::path> candidates;
   if (!ShareDirectory().empty()) candidates.push_back(fs::path(ShareDirectory()) / folder);
   candidates.push_back(ProgramDirectory() / "../share/touchdown" / folder);
-  candidates.push_back(fs::path(TOUCHDOWN_SHARE) / folder);
   return ExistingDirectories(candidates);
 }
 

@@ -355,7 +355,13 @@ class Trial {
         result_.detail += " Reason: " + no_plan_reason_ + ".";
       }
       if (result_.outcome == Outcome::kStood) {
-        result_.cause = no_plan_reason_.empty() ? mode_ : no_plan_reason_;
+        const control::MissionMode mode = onboard_.status().mission.mode;
+        const bool held = mode == control::MissionMode::kHold;
+        if (!no_plan_reason_.empty()) {
+          result_.cause = no_plan_reason_;
+        } else {
+          result_.cause = held ? mode_ : std::string(control::ToString(mode));
+        }
       }
       result_.detail += fmt::format(" Mode: {}.", mode_);
     }

@@ -15,6 +15,9 @@ std::string Vector(const Eigen::Vector3d& v) {
 // What is flown at the start of the step.
 std::string CommittedBefore(const RecordPlan& asked, double t_start) {
   const planning::FlightPair& pair = asked.before.next;
+  if (!pair.Lands() && pair.Last().t_end() <= t_start) {
+    return fmt::format("  committed  rest, since t = {:.3f} s\n", pair.Last().t_end());
+  }
   if (pair.t_stop <= t_start) {
     return fmt::format("  committed  a stored stop, until t = {:.3f} s\n", pair.stop.t_end());
   }

@@ -84,7 +84,8 @@ void AddSensorKeys(KeyList& keys) {
   keys.push_back(Number<Scenario>("tags.rate", Above(0, 100, "Hz"), "rate of the downward camera",
                                   TOUCHDOWN_AT(tag_rate)));
   AddCameraKeys(keys);
-  keys.push_back(Number<Scenario>("depth.rate", Above(0, 100, "Hz"), "rate of the depth camera",
+  keys.push_back(Number<Scenario>("depth.rate", Above(0, 100, "Hz"),
+                                  "rate of the depth camera; 5 s without an image end in a hold",
                                   TOUCHDOWN_AT(depth_rate)));
   AddDepthKeys(keys);
   keys.push_back(Text(

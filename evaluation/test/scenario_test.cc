@@ -59,6 +59,7 @@ TEST_F(ScenarioTest, SensorKeysAreChecked) {
   EXPECT_THAT(Refusal("gps: {outage: [5, 3]}\n"), HasSubstr("must not end before it begins"));
   EXPECT_THAT(Refusal("own: {gps: {outage: [5, 3]}}\n"), HasSubstr("own.gps.outage must not end"));
   EXPECT_THAT(Refusal("depth: {outage: [5, 3]}\n"), HasSubstr("depth.outage must not end"));
+  EXPECT_THAT(Refusal("camera: {outage: [5, 3]}\n"), HasSubstr("camera.outage must not end"));
   EXPECT_THAT(Refusal("own_state: guessed\n"), HasSubstr("own_state must be true or estimated"));
   EXPECT_EQ(Refusal("own: {gps: {rate: 0}}\n"), "accepted");
   EXPECT_THAT(Refusal("own_state: estimated\nown: {gps: {rate: 0}}\n"),

@@ -34,7 +34,7 @@ class FrameDelivery {
   }
 
   /// Whether the frame taken at t [s] will arrive at all. Takes one draw, so an outage does not
-  /// change the frames after it.
+  /// change which later frames are lost.
   bool Admit(double t) {
     const bool kept = random_.Uniform(0.0, 1.0) >= config_.drop_probability;
     return kept && !(t >= config_.outage_begin_s && t < config_.outage_end_s);

@@ -34,7 +34,8 @@
 //   go_around      tracking        climb_timeout      climbing took too long, pad converged
 //   go_around      hold            pad_lost           climb over or too long, no converged pad
 //   go_around      hold            own_state_lost     climb over or too long, own state not usable
-//   hold           tracking        recovered          pad converged and a plan, for hold_time
+//   go_around      hold            depth_lost         climb over or too long, no depth image
+//   hold           tracking        recovered          pad converged, depth images and a plan, for hold_time
 //   (flying)       hold            invalid_input      not a number for over invalid_timeout
 //   (armed)        emergency_stop  emergency          emergency flag
 //   emergency_stop hold            emergency_cleared  flag down for over emergency_time
@@ -157,7 +158,7 @@ struct MissionInputs {
   double tag_age = std::numeric_limits<double>::infinity();  ///< of the last sighting [s]
   bool own_fresh = true;    ///< own state runs on fresh measurements, else it is dead reckoning
   bool own_usable = true;   ///< own state is good enough to fly to the pad by
-  double depth_age = 0.0;   ///< of the last depth image [s]; 0 while none has come
+  double depth_age = 0.0;   ///< of the last depth image, or of the flight if none has come [s]
   double foot_force = 0.0;  ///< sum over the feet [N]
   bool has_plan = false;    ///< a certified plan exists
   bool lands =
