@@ -51,14 +51,19 @@ GuidePath AllOf(const TimedPath& way) {
   return path;
 }
 
-TEST(PathFinder, LeadsPastARunAndTheOtherWayWhenThatIsClosed) {
+/// A straight curve that a wall blocks once.
+class PathFinderAtAWall : public ::testing::Test {
+ protected:
   const OccupancyMap map = Wall();
   const FreeSpace space = SpaceOf(map);
   const UniformBspline curve = Straight({-2.0, 0.0, 0.05}, {2.0, 0.0, 0.05});
   const BlockedRun run = OnlyRun(curve, space);
   WorkBudget budget;
-  PathFinder finder(kUp, {}, &budget);
+  PathFinder finder{kUp, {}, &budget};
   TimedPath way;
+};
+
+TEST_F(PathFinderAtAWall, LeadsPastARunAndTheOtherWayWhenThatIsClosed) {
   budget.Refill(kEnough);
   finder.Begin(1.0);
   ASSERT_EQ(finder.LeadPast(curve, run, space, &way), SearchStatus::kFound);
@@ -203,14 +208,7 @@ TEST(PathFinder, OutOfTheWindowTheWayStaysBetweenFloorAndCeiling) {
   }
 }
 
-TEST(PathFinder, AllSearchesShareTheBudget) {
-  const OccupancyMap map = Wall();
-  const FreeSpace space = SpaceOf(map);
-  const UniformBspline curve = Straight({-2.0, 0.0, 0.05}, {2.0, 0.0, 0.05});
-  const BlockedRun run = OnlyRun(curve, space);
-  WorkBudget budget;
-  PathFinder finder(kUp, {}, &budget);
-  TimedPath way;
+TEST_F(PathFinderAtAWall, AllSearchesShareTheBudget) {
   budget.Refill(600);
   finder.Begin(1.0);
   int found = 0;
