@@ -37,6 +37,7 @@ Conditions Assess(const MissionState& s, const MissionInputs& in,
                       !std::isnan(in.pad_sigma) && !std::isnan(in.contact_sigma) &&
                       !std::isnan(in.tag_age) && !std::isnan(in.plan_failed_for) &&
                       !std::isnan(in.arrival_in) && !std::isnan(in.depth_age);
+  now.sees = in.depth_age <= p.depth_timeout;
   now.pad_good = now.numbers_valid && in.own_usable && in.pad_available && in.pad_converged;
   // Dead reckoning only gets worse: if it lasts, the gate does not wait for its end.
   const bool own_good =

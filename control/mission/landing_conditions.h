@@ -15,6 +15,7 @@ inline constexpr double kNever = std::numeric_limits<double>::infinity();
 struct Conditions {
   bool numbers_valid;
   bool pad_good;  ///< the pad can be planned to
+  bool sees;      ///< depth images come
   Gate gate;
   bool gate_open;  ///< the pad is known well enough to descend below the gate height, gust or not
   bool may_land;   ///< ... and in the wind felt now the feet would touch first

@@ -36,8 +36,8 @@ void UpdateTimers(const MissionInputs& in, const MissionParameters& p, const Con
   // each time.
   if (in.own_usable) Track(now.numbers_valid && !now.pad_good, t, state.pad_missing_since);
   Track(!in.own_usable, t, state.own_lost_since);
-  const bool sees = in.depth_age <= p.depth_timeout;
-  Track(now.pad_good && sees && in.has_plan && in.plan_failed_for <= 0.0, t, state.recovered_since);
+  Track(now.pad_good && now.sees && in.has_plan && in.plan_failed_for <= 0.0, t,
+        state.recovered_since);
   Track(!now.numbers_valid, t, state.invalid_since);
   Track(!in.emergency, t, state.calm_since);
   const bool gate_matters = state.mode == MissionMode::kLanding && !state.committed &&

@@ -88,9 +88,7 @@ Transition FromTracking(const MissionState& s, const MissionInputs& in, const Co
   if (LastedLonger(s.pad_missing_since, s.t, p.pad_timeout)) {
     return {MissionMode::kHold, TransitionReason::kPadLost};
   }
-  if (in.depth_age > p.depth_timeout) {
-    return {MissionMode::kHold, TransitionReason::kDepthLost};
-  }
+  if (!now.sees) return {MissionMode::kHold, TransitionReason::kDepthLost};
   if (in.plan_failed_for > p.plan_timeout) {
     return {MissionMode::kHold, TransitionReason::kPlanFailed};
   }
@@ -114,7 +112,7 @@ Transition FromGoAround(const MissionState& s, const MissionInputs& in, const Co
   if (!high && !timeout) return {s.mode, TransitionReason::kNone};
   if (!in.own_usable) return {MissionMode::kHold, TransitionReason::kOwnStateLost};
   if (!now.pad_good) return {MissionMode::kHold, TransitionReason::kPadLost};
-  if (in.depth_age > p.depth_timeout) return {MissionMode::kHold, TransitionReason::kDepthLost};
+  if (!now.sees) return {MissionMode::kHold, TransitionReason::kDepthLost};
   return {MissionMode::kTracking,
           high ? TransitionReason::kClimbComplete : TransitionReason::kClimbTimeout};
 }
