@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "evaluation/base/map_file.h"
 
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -12,6 +11,7 @@
 #include "evaluation/base/atomic_file.h"
 #include "evaluation/base/bad_input.h"
 #include "evaluation/base/output_path.h"
+#include "sim/base/input_file.h"
 
 namespace touchdown::evaluation {
 namespace {
@@ -21,20 +21,11 @@ namespace fs = std::filesystem;
 }  // namespace
 
 void ReadMapFile(const std::string& path, planning::PersistentMap* map) {
-  std::error_code ignored;
-  if (fs::is_directory(path, ignored)) {
-    throw std::invalid_argument(fmt::format("{}: a map is a file, and this is a directory", path));
-  }
-  errno = 0;
-  std::ifstream file(path, std::ios::binary);
-  if (!file) {
-    throw std::invalid_argument(
-        fmt::format("{}: the map cannot be read ({})", path, std::strerror(errno)));
-  }
+  std::istringstream file(sim::ReadInputFile(path, planning::kMostMapBytes));
   try {
     map->Read(file);
   } catch (const std::invalid_argument& error) {
-    throw std::invalid_argument(fmt::format("{}: {}", path, error.what()));
+    sim::RefuseFile(path, error.what());
   }
 }
 

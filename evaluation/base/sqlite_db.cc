@@ -4,13 +4,20 @@
 #include "evaluation/base/sqlite_db.h"
 
 #include <cmath>
-#include <fstream>
+#include <filesystem>
 #include <utility>
 
+#include <fmt/format.h>
 #include <sqlite3.h>
+#include <nlohmann/json.hpp>
+
+#include "evaluation/base/bad_input.h"
+#include "sim/base/input_file.h"
 
 namespace touchdown::evaluation {
 namespace {
+
+constexpr int kMostLength = 64 << 20;  // of a text or blob
 
 void Check(sqlite3* db, int code) {
   if (code == SQLITE_OK || code == SQLITE_ROW || code == SQLITE_DONE) return;
@@ -121,13 +128,28 @@ std::string SqliteStatement::Text(int column) const {
 
 bool IsSqliteFile(const std::string& path) {
   constexpr std::string_view kMagic = "SQLite format 3";
-  std::string head(kMagic.size(), '\0');
-  std::ifstream(path, std::ios::binary)
-      .read(head.data(), static_cast<std::streamsize>(head.size()));
-  return head == kMagic;
+  return sim::HeadOfFile(path, kMagic.size()) == kMagic;
+}
+
+void RethrowNaming(const std::string& path, const char* what) {
+  try {
+    throw;
+  } catch (const SqliteError& error) {
+    throw BadInput(
+        fmt::format("{}: not a {} that this build reads ({}).", path, what, error.what()));
+  } catch (const nlohmann::json::exception&) {
+    throw BadInput(fmt::format("{}: its tables lack a figure.", path));
+  } catch (const std::invalid_argument& error) {
+    throw BadInput(fmt::format("{}: {}.", path, error.what()));
+  }
 }
 
 SqliteDb::SqliteDb(const std::string& path, Mode mode) {
+  std::error_code unknown;
+  if (mode != Mode::kCreate && std::filesystem::exists(path, unknown) &&
+      !std::filesystem::is_regular_file(path, unknown)) {
+    throw SqliteError(path + ": it is no regular file");
+  }
   // A reader must be able to recover what a killed writer left. So it opens for writing where the file allows it, and
   // the pragma below prevents writes.
   int flags = SQLITE_OPEN_READWRITE;
@@ -139,6 +161,9 @@ SqliteDb::SqliteDb(const std::string& path, Mode mode) {
     throw SqliteError(path + ": " + words);
   }
   sqlite3_busy_timeout(db_, 10000);
+  sqlite3_db_config(db_, SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);
+  sqlite3_db_config(db_, SQLITE_DBCONFIG_ENABLE_TRIGGER, 0, nullptr);
+  sqlite3_limit(db_, SQLITE_LIMIT_LENGTH, kMostLength);
   if (mode == Mode::kReadOnly) Execute("PRAGMA query_only=ON");
 }
 

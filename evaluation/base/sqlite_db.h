@@ -93,8 +93,9 @@ class SqliteDb {
  public:
   enum class Mode { kReadOnly, kReadWrite, kCreate };
 
-  /// `path` may be ":memory:". Another process that is just writing is waited for, 10 s at most.
-  /// @throws SqliteError when the file cannot be opened or created.
+  /// `path` may be ":memory:". Another process that is just writing is waited for, 10 s at most. Views and triggers of
+  /// the file, which could run without end, do not.
+  /// @throws SqliteError when the file cannot be opened or created, or is no regular one.
   SqliteDb(const std::string& path, Mode mode);
   ~SqliteDb();
   SqliteDb(const SqliteDb&) = delete;
@@ -111,6 +112,21 @@ class SqliteDb {
 
 /// Whether the file begins as SQLite's do.
 bool IsSqliteFile(const std::string& path);
+
+/// To be called in a catch block, of what reads the database at `path`. `what` that is: "record".
+/// @throws BadInput that names the file, for an SqliteError, an std::invalid_argument, or JSON that lacks something; else
+/// what was caught
+[[noreturn]] void RethrowNaming(const std::string& path, const char* what);
+
+/// Calls read(), which reads the database at `path`. @throws as RethrowNaming
+template <typename Read>
+auto NamingFile(const std::string& path, const char* what, const Read& read) {
+  try {
+    return read();
+  } catch (...) {
+    RethrowNaming(path, what);
+  }
+}
 
 /// Begins a transaction; rolls it back unless Commit() was called.
 class SqliteTransaction {

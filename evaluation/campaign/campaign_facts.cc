@@ -4,24 +4,21 @@
 #include "evaluation/campaign/campaign_facts.h"
 
 #include <algorithm>
-#include <fstream>
 #include <initializer_list>
-#include <iterator>
+#include <set>
 #include <sstream>
 
 #include <fmt/format.h>
 
 #include "evaluation/base/bad_input.h"
 #include "evaluation/base/build_info.h"
+#include "evaluation/campaign/trial_columns.h"
 #include "evaluation/scenario/scenario_world.h"
+#include "sim/base/input_file.h"
+#include "touchdown/planning/map/persistent_map.h"
 
 namespace touchdown::evaluation {
 namespace {
-
-std::string HashOfFile(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return HashOf({std::istreambuf_iterator<char>(file), {}});
-}
 
 // The part of a scenario that results depend on, as YAML. A file may be continued under another description.
 std::string WhatCounts(Scenario scenario) {
@@ -46,7 +43,7 @@ class ScenarioHashes {
  private:
   const std::string& OfMap(const std::string& path) {
     const auto [at, fresh] = maps_.try_emplace(path);
-    if (fresh) at->second = HashOfFile(path);
+    if (fresh) at->second = HashOf(sim::ReadInputFile(path, planning::kMostMapBytes));
     return at->second;
   }
   std::map<std::string, std::string> scenarios_;
@@ -100,6 +97,15 @@ std::string FirstOther(const Manifest& there, const Manifest& here,
   return {};
 }
 
+// With their columns, in SQL. Statistics that SQLite keeps do not count.
+std::set<std::string> TablesOf(SqliteDb& db) {
+  std::set<std::string> tables;
+  SqliteStatement rows =
+      db.Prepare("SELECT sql FROM sqlite_master WHERE sql NOT NULL AND name NOT LIKE 'sqlite_%'");
+  while (rows.Step()) tables.insert(rows.Text(0));
+  return tables;
+}
+
 }  // namespace
 
 ManifestFacts FactsOf(const Campaign& campaign, const Shard& shard) {
@@ -133,6 +139,11 @@ Manifest ReadManifest(SqliteDb& db, const std::string& path) {
   if (Fact(manifest, "version") != std::to_string(kTrialFormat.version)) {
     throw BadInput(fmt::format("{}: its format has version {}, and this program writes version {}.",
                                path, Fact(manifest, "version"), kTrialFormat.version));
+  }
+  SqliteDb like(":memory:", SqliteDb::Mode::kCreate);
+  FillResultFile(like, kTrialFormat, TrialSchema().c_str(), {}, [](SqliteDb&) {});
+  if (TablesOf(db) != TablesOf(like)) {
+    throw BadInput(fmt::format("{}: its tables are not those of a file of trials.", path));
   }
   return manifest;
 }

@@ -14,6 +14,7 @@
 
 #include "evaluation/base/bad_input.h"
 #include "evaluation/base/suggestion.h"
+#include "evaluation/base/yaml_text.h"
 #include "evaluation/scenario/scenario_value.h"
 
 namespace touchdown::evaluation {
@@ -223,16 +224,6 @@ void CheckNames(const StudyFile& study, const std::string& path) {
   }
 }
 
-YAML::Node LoadYaml(const std::string& path) {
-  try {
-    return YAML::LoadFile(path);
-  } catch (const YAML::BadFile&) {
-    throw BadInput(fmt::format("{}: the study file cannot be read.", path));
-  } catch (const YAML::Exception& error) {
-    throw BadInput(fmt::format("{}:{}: {}.", path, error.mark.line + 1, error.msg));
-  }
-}
-
 }  // namespace
 
 StudyFile LoadStudyFile(const std::string& path, const Registries& registries) {
@@ -273,7 +264,7 @@ StudyFile LoadStudyFile(const std::string& path, const Registries& registries) {
           study.methods.push_back(std::move(method));
         }
       });
-  reader.Read(LoadYaml(path));
+  reader.Read(ReadYamlFile(path, "study"));
   if (study.report.empty()) study.report = "plain";
   CheckNames(study, path);
   return study;

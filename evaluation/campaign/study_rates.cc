@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "evaluation/campaign/study_rates.h"
 
-#include <fstream>
 #include <tuple>
 #include <utility>
 
@@ -20,17 +19,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json ReadPlan(const std::string& folder) {
-  const std::string path = folder + "/study.json";
-  std::ifstream stream(path);
-  if (!stream) throw BadInput(fmt::format("{}: it cannot be read.", path));
-  Json plan = Json::parse(stream, nullptr, false);
-  if (!plan.is_object() || !plan.contains("parts")) {
-    throw BadInput(fmt::format("{}: it is not a study's plan.", path));
-  }
-  return plan;
-}
-
 std::string TitleOf(const Json& entries, const std::string& name) {
   for (const Json& entry : entries) {
     if (entry.at("name") == name) return entry.at("title");
@@ -47,19 +35,21 @@ struct Row {
 std::map<std::pair<std::string, std::string>, std::vector<Row>> ReadRows(
     const std::string& folder) {
   const std::string path = StudyTablePath(folder);
-  SqliteDb db(path, SqliteDb::Mode::kReadOnly);
-  ReadManifest(db, path);
   std::map<std::pair<std::string, std::string>, std::vector<Row>> rows;
-  SqliteStatement trials = db.Prepare(
-      "SELECT cell.value, method.value, outcome, landed, time_to_land_s, touchdown_error_m FROM "
-      "trial "
-      "JOIN variation AS cell ON cell.trial = trial.trial AND cell.key = 'cell' "
-      "JOIN variation AS method ON method.trial = trial.trial AND method.key = 'method' "
-      "ORDER BY trial.trial");
-  while (trials.Step()) {
-    rows[{trials.Text(0), trials.Text(1)}].push_back(
-        {trials.Text(2), trials.Integer(3) != 0, trials.Real(4), trials.Real(5)});
-  }
+  NamingFile(path, kFileOfTrials, [&] {
+    SqliteDb db(path, SqliteDb::Mode::kReadOnly);
+    ReadManifest(db, path);
+    SqliteStatement trials = db.Prepare(
+        "SELECT cell.value, method.value, outcome, landed, time_to_land_s, touchdown_error_m FROM "
+        "trial "
+        "JOIN variation AS cell ON cell.trial = trial.trial AND cell.key = 'cell' "
+        "JOIN variation AS method ON method.trial = trial.trial AND method.key = 'method' "
+        "ORDER BY trial.trial");
+    while (trials.Step()) {
+      rows[{trials.Text(0), trials.Text(1)}].push_back(
+          {trials.Text(2), trials.Integer(3) != 0, trials.Real(4), trials.Real(5)});
+    }
+  });
   return rows;
 }
 
@@ -142,7 +132,7 @@ std::string PartText(const PartRates& part) {
 }  // namespace
 
 StudyRates ReadStudyRates(const std::string& folder) {
-  const Json plan = ReadPlan(folder);
+  const Json plan = ReadStudyPlan(folder);
   try {
     StudyRates rates = Gather(folder, plan);
     if (rates.trials > 0) return rates;
@@ -150,8 +140,6 @@ StudyRates ReadStudyRates(const std::string& folder) {
   } catch (const nlohmann::json::exception& error) {
     throw BadInput(
         fmt::format("{}/study.json: it is not a study's plan ({}).", folder, error.what()));
-  } catch (const SqliteError& error) {
-    throw BadInput(fmt::format("{}.", error.what()));
   }
 }
 

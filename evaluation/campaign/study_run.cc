@@ -17,6 +17,7 @@
 #include "evaluation/base/atomic_file.h"
 #include "evaluation/base/bad_input.h"
 #include "evaluation/campaign/campaign_progress.h"
+#include "sim/base/input_file.h"
 
 namespace touchdown::evaluation {
 namespace {
@@ -25,6 +26,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr char kFlights[] = "flights";
+constexpr std::size_t kMostPlanBytes = 64 << 20;
 
 void MakeFolder(const std::string& folder) {
   std::error_code error;
@@ -36,10 +38,9 @@ std::string PlanPath(const std::string& folder) { return folder + "/study.json";
 
 // How the trials that are there were flown.
 Json FlightsBefore(const std::string& folder) {
-  std::ifstream stream(PlanPath(folder));
-  if (!stream) return Json::array();
-  const Json before = Json::parse(stream, nullptr, false);
-  return before.is_object() && before.contains(kFlights) ? before[kFlights] : Json::array();
+  if (!fs::exists(PlanPath(folder))) return Json::array();
+  const Json before = ReadStudyPlan(folder);
+  return before.contains(kFlights) ? before[kFlights] : Json::array();
 }
 
 void WritePlan(const StudyPlan& plan, const std::string& folder, const Json& flights) {
@@ -75,6 +76,19 @@ void Record(const StudyPlan& plan, const std::string& folder, const std::vector<
 }
 
 }  // namespace
+
+Json ReadStudyPlan(const std::string& folder) {
+  const std::string path = PlanPath(folder);
+  try {
+    Json plan = Json::parse(sim::ReadInputFile(path, kMostPlanBytes), nullptr, false);
+    if (!plan.is_object() || !plan.contains("parts")) {
+      sim::RefuseFile(path, "it is not a study's plan");
+    }
+    return plan;
+  } catch (const std::invalid_argument& error) {
+    throw BadInput(fmt::format("{}.", error.what()));
+  }
+}
 
 std::string StudyTablePath(const std::string& folder, const Shard& shard) {
   if (shard.of == 1) return folder + "/study.db";

@@ -3,6 +3,8 @@
 
 #include <string>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include "evaluation/campaign/recorded_trials.h"
 #include "evaluation/campaign/study_plan.h"
 
@@ -17,6 +19,9 @@ namespace touchdown::evaluation {
 /// `options.db` is set here. @throws as RunCampaign does
 CampaignResult FlyStudy(const StudyPlan& plan, const std::string& folder, CampaignOptions options,
                         Recorded which, const Registries& registries);
+
+/// The plan in a study's folder, of 64 MiB at most. @throws BadInput
+nlohmann::ordered_json ReadStudyPlan(const std::string& folder);
 
 /// Where the trials of a study are.
 std::string StudyTablePath(const std::string& folder, const Shard& shard = {});

@@ -102,7 +102,13 @@ class Put {
     value = *outcome;
   }
   void operator()(const char* name, Counts& value) {
-    value = nlohmann::json::parse(Text(name)).get<Counts>();
+    const nlohmann::json json = nlohmann::json::parse(Text(name), nullptr, false);
+    if (!json.is_object()) Refuse(name, "an object of counts");
+    value.clear();
+    for (const auto& [word, count] : json.items()) {
+      if (!count.is_number_integer()) Refuse(name, "an object of counts");
+      value[word] = count;
+    }
   }
   template <typename Value>
   void Derived(const char* name, const Value&) {
@@ -268,18 +274,24 @@ TrialResult ResultOf(const TrialValues& values) {
   return result;
 }
 
-std::string TrialColumns() {
-  Declare declare;
+std::string TrialSchema() {
+  Declare trial, timing;
   TrialResult any;
-  WalkTrial(declare, any);
-  return declare.text();
-}
-
-std::string TimingColumns() {
-  Declare declare;
-  TrialTiming any;
-  WalkTiming(declare, any);
-  return declare.text();
+  WalkTrial(trial, any);
+  WalkTiming(timing, any.timing);
+  return fmt::format(R"sql(
+CREATE TABLE planned(trial INTEGER PRIMARY KEY, cell INTEGER, seed INTEGER, replay TEXT);
+CREATE TABLE variation(trial INTEGER, key TEXT, value TEXT, PRIMARY KEY(trial, key));
+CREATE TABLE varied_key(key TEXT PRIMARY KEY, unit TEXT, kind TEXT);
+CREATE TABLE trial(trial INTEGER PRIMARY KEY, {});
+CREATE TABLE cell(cell INTEGER PRIMARY KEY, planned INTEGER, trials INTEGER, succeeded INTEGER,
+  rate_lo REAL, rate_hi REAL, time_to_land_median_s REAL, touchdown_error_median_m REAL);
+CREATE TABLE cell_value(cell INTEGER, key TEXT, value TEXT, PRIMARY KEY(cell, key));
+CREATE TABLE timing(trial INTEGER PRIMARY KEY, {});
+CREATE TABLE replan_time(trial INTEGER, replan INTEGER, wall_ms REAL, cpu_ms REAL,
+  PRIMARY KEY(trial, replan)) WITHOUT ROWID;
+)sql",
+                     trial.text(), timing.text());
 }
 
 namespace {

@@ -20,9 +20,8 @@ TrialValues ValuesOf(const TrialResult& result);
 /// Without its replan times. @throws std::invalid_argument for values that are no trial's
 TrialResult ResultOf(const TrialValues& values);
 
-/// "seed INTEGER, landed INTEGER, ...": the columns' declarations in SQL.
-std::string TrialColumns();
-std::string TimingColumns();
+/// The tables of a file of trials, beside its manifest, in SQL.
+std::string TrialSchema();
 
 /// A whole result as bytes, for another process of the same program.
 std::string PackResult(const TrialResult& result);

@@ -26,17 +26,15 @@ struct Input {
 std::vector<Input> Open(const std::vector<std::string>& files) {
   std::vector<Input> inputs;
   for (const std::string& path : files) {
-    Input input;
+    Input& input = inputs.emplace_back();
     input.path = path;
-    try {
+    NamingFile(path, kFileOfTrials, [&] {
       input.db = std::make_unique<SqliteDb>(path, SqliteDb::Mode::kReadOnly);
-    } catch (const SqliteError& error) {
-      throw BadInput(fmt::format("{}.", error.what()));
-    }
-    // All data of a file are from one moment, even if it still grows.
-    input.db->Execute("BEGIN");
-    input.manifest = ReadManifest(*input.db, path);
-    inputs.push_back(std::move(input));
+      // All data of a file are from one moment, even if it still grows.
+      input.db->Execute("BEGIN");
+      input.manifest = ReadManifest(*input.db, path);
+      ReadTrials(*input.db, true);
+    });
     const std::string other = Difference(inputs.back().manifest, inputs.front().manifest);
     if (!other.empty()) {
       throw BadInput(fmt::format("{}: it does not belong to {}: {}.", path, files.front(), other));
@@ -101,15 +99,19 @@ MergedTrials MergeTrials(const std::string& out, const std::vector<std::string>&
     SqliteDb db(file.working_path(), SqliteDb::Mode::kCreate);
     db.Execute("PRAGMA journal_mode=OFF");  // it is written once and as a whole
     SqliteTransaction transaction(db);
-    SqliteDb& first = *inputs.front().db;
-    MakeTables(first, db);
-    for (const char* table :
-         {"manifest", "planned", "variation", "varied_key", "cell", "cell_value"}) {
-      CopyRows(first, table, db);
-    }
+    NamingFile(inputs.front().path, kFileOfTrials, [&] {
+      SqliteDb& first = *inputs.front().db;
+      MakeTables(first, db);
+      for (const char* table :
+           {"manifest", "planned", "variation", "varied_key", "cell", "cell_value"}) {
+        CopyRows(first, table, db);
+      }
+    });
     db.Prepare("UPDATE manifest SET value = ? WHERE key = 'shard'").Run(Shard().ToString());
     for (const Input& input : inputs) {
-      for (const char* table : {"trial", "timing", "replan_time"}) CopyRows(*input.db, table, db);
+      NamingFile(input.path, kFileOfTrials, [&] {
+        for (const char* table : {"trial", "timing", "replan_time"}) CopyRows(*input.db, table, db);
+      });
     }
     WriteCells(db);
     transaction.Commit();

@@ -21,22 +21,6 @@
 namespace touchdown::evaluation {
 namespace {
 
-std::string Schema() {
-  return fmt::format(R"sql(
-CREATE TABLE planned(trial INTEGER PRIMARY KEY, cell INTEGER, seed INTEGER, replay TEXT);
-CREATE TABLE variation(trial INTEGER, key TEXT, value TEXT, PRIMARY KEY(trial, key));
-CREATE TABLE varied_key(key TEXT PRIMARY KEY, unit TEXT, kind TEXT);
-CREATE TABLE trial(trial INTEGER PRIMARY KEY, {});
-CREATE TABLE cell(cell INTEGER PRIMARY KEY, planned INTEGER, trials INTEGER, succeeded INTEGER,
-  rate_lo REAL, rate_hi REAL, time_to_land_median_s REAL, touchdown_error_median_m REAL);
-CREATE TABLE cell_value(cell INTEGER, key TEXT, value TEXT, PRIMARY KEY(cell, key));
-CREATE TABLE timing(trial INTEGER PRIMARY KEY, {});
-CREATE TABLE replan_time(trial INTEGER, replan INTEGER, wall_ms REAL, cpu_ms REAL,
-  PRIMARY KEY(trial, replan)) WITHOUT ROWID;
-)sql",
-                     TrialColumns(), TimingColumns());
-}
-
 std::string Marks(int columns) {
   std::string marks = "?";
   for (int i = 1; i < columns; ++i) marks += ", ?";
@@ -72,7 +56,7 @@ void WriteCell(SqliteDb& db, int cell, const CellFigures& f) {
 }
 
 void Fill(SqliteDb& db, const Campaign& campaign, const Shard& shard, const CellPlan& cells) {
-  FillResultFile(db, kTrialFormat, Schema().c_str(), FactsOf(campaign, shard),
+  FillResultFile(db, kTrialFormat, TrialSchema().c_str(), FactsOf(campaign, shard),
                  [&](SqliteDb&) { WritePlan(db, campaign, cells); });
 }
 
@@ -112,7 +96,7 @@ SqliteStatement Insert(SqliteDb& db, const std::string& table, std::size_t colum
 
 TrialStore::TrialStore(const std::string& path, const Campaign& campaign, const Shard& shard,
                        Again again)
-    : cells_(PlanCells(campaign)), tallies_(cells_.cells.size()) {
+    : path_(path), cells_(PlanCells(campaign)), tallies_(cells_.cells.size()) {
   if (path.empty()) {
     db_ = std::make_unique<SqliteDb>(":memory:", SqliteDb::Mode::kCreate);
     Fill(*db_, campaign, shard, cells_);
@@ -120,11 +104,13 @@ TrialStore::TrialStore(const std::string& path, const Campaign& campaign, const 
   }
   if (!std::filesystem::exists(path)) Create(path, campaign, shard, cells_);
   lock_ = std::make_unique<FileLock>(path);
-  db_ = std::make_unique<SqliteDb>(path, SqliteDb::Mode::kReadWrite);
-  CheckIsThis(*db_, path, campaign, shard);
-  db_->Execute("PRAGMA journal_mode=WAL; PRAGMA synchronous=NORMAL");
-  if (again == Again::kLost) ForgetLost();
-  for (const auto& [trial, result] : ReadTrials(*db_, false)) Count(trial, result);
+  NamingFile(path, kFileOfTrials, [&] {
+    db_ = std::make_unique<SqliteDb>(path, SqliteDb::Mode::kReadWrite);
+    CheckIsThis(*db_, path, campaign, shard);
+    db_->Execute("PRAGMA journal_mode=WAL; PRAGMA synchronous=NORMAL");
+    if (again == Again::kLost) ForgetLost();
+    for (const auto& [trial, result] : ReadTrials(*db_, false)) Count(trial, result);
+  });
 }
 
 TrialStore::~TrialStore() {
@@ -156,7 +142,11 @@ void TrialStore::ForgetLost() {
 void TrialStore::Count(int trial, const TrialResult& result) {
   flown_.insert(trial);
   succeeded_ += result.succeeded() ? 1 : 0;
-  const int cell = cells_.cell_of.at(static_cast<std::size_t>(trial));
+  if (trial < 0 || trial >= static_cast<int>(cells_.cell_of.size())) {
+    throw std::invalid_argument(
+        fmt::format("it holds trial {} of {}", trial, cells_.cell_of.size()));
+  }
+  const int cell = cells_.cell_of[static_cast<std::size_t>(trial)];
   tallies_[static_cast<std::size_t>(cell)].Add(result);
 }
 
@@ -188,13 +178,24 @@ void TrialStore::Add(int trial, const TrialResult& result) {
   transaction.Commit();
 }
 
+std::map<int, TrialResult> TrialStore::Results() {
+  return NamingFile(path_, kFileOfTrials, [this] { return ReadTrials(*db_, true); });
+}
+
 std::map<int, TrialResult> ReadTrials(SqliteDb& db, bool with_replan_times) {
+  SqliteStatement strays = db.Prepare(
+      "SELECT trial FROM trial WHERE trial NOT IN (SELECT trial FROM planned) UNION "
+      "SELECT trial FROM replan_time WHERE trial NOT IN (SELECT trial FROM trial)");
+  if (strays.Step()) {
+    throw std::invalid_argument(
+        fmt::format("it holds figures of trial {}, which was not flown", strays.Integer(0)));
+  }
   std::map<int, TrialResult> results;
   SqliteStatement trial = db.Prepare("SELECT * FROM trial ORDER BY trial");
   SqliteStatement timing = db.Prepare("SELECT * FROM timing ORDER BY trial");
   while (trial.Step()) {
     if (!timing.Step() || timing.Integer(0) != trial.Integer(0)) {
-      throw SqliteError(fmt::format("trial {} has no timing", trial.Integer(0)));
+      throw std::invalid_argument(fmt::format("its trial {} has no timing", trial.Integer(0)));
     }
     results[static_cast<int>(trial.Integer(0))] = ResultOf({trial.Row(1), timing.Row(1)});
   }

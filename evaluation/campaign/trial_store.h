@@ -28,8 +28,8 @@ class TrialStore {
   enum class Again { kNone, kLost };
 
   /// Makes the file, or continues the one that is there. `path` empty: in memory.
-  /// @throws BadInput if the existing file is not of this campaign, shard and build, or if another process writes it;
-  /// SqliteError, std::filesystem::filesystem_error
+  /// @throws BadInput if the existing file is damaged, not of this campaign, shard and build, or if another process
+  /// writes it; SqliteError, std::filesystem::filesystem_error
   TrialStore(const std::string& path, const Campaign& campaign, const Shard& shard,
              Again again = Again::kNone);
   ~TrialStore();
@@ -40,13 +40,14 @@ class TrialStore {
   int succeeded() const { return succeeded_; }
   /// @throws SqliteError
   void Add(int trial, const TrialResult& result);
-  /// The results in the file, by trial. @throws SqliteError
-  std::map<int, TrialResult> Results() { return ReadTrials(*db_, true); }
+  /// The results in the file, by trial. @throws BadInput
+  std::map<int, TrialResult> Results();
 
  private:
   void ForgetLost();
   void Count(int trial, const TrialResult& result);
 
+  std::string path_;
   CellPlan cells_;
   std::vector<CellTally> tallies_;
   std::set<int> flown_;

@@ -202,12 +202,12 @@ FlightSource FlightsOf(const std::string& path, const std::vector<std::string>& 
                     "(study.db in its folder) or of hostile worlds.",
                     path));
   }
-  try {
+  std::optional<FlightSource> trials;
+  NamingFile(path, "file of flights", [&] {
     SqliteDb db(path, SqliteDb::Mode::kReadOnly);
-    if (HasManifest(db)) return TrialsOf(db, path, overrides, registries);
-  } catch (const SqliteError& error) {
-    throw BadInput(fmt::format("{}.", error.what()));
-  }
+    if (HasManifest(db)) trials = TrialsOf(db, path, overrides, registries);
+  });
+  if (trials) return *trials;
   return RecordOf(path, overrides, registries);
 }
 

@@ -485,13 +485,8 @@ void WriteMcap(const std::string& record_path, const std::string& mcap_path,
     }
     if (!out) throw std::runtime_error(fmt::format("{}: cannot be written", mcap_path));
     file.Commit();
-  } catch (const SqliteError& error) {
-    throw BadInput(
-        fmt::format("{}: not a record that this build reads ({}).", record_path, error.what()));
-  } catch (const nlohmann::json::exception&) {
-    throw BadInput(fmt::format("{}: its tables lack a figure.", record_path));
-  } catch (const std::invalid_argument& error) {
-    throw BadInput(fmt::format("{}: {}.", record_path, error.what()));
+  } catch (...) {
+    RethrowNaming(record_path, "record");
   }
 }
 

@@ -53,7 +53,7 @@ Json FlightDocument(const std::string& record, const std::string& name,
                     const Registries& registries, const std::function<void(int, int)>& done) {
   RecordedFlight flight = ReadRecord(record, {}, registries);
   flight.path = name;
-  try {
+  return NamingFile(name, "record", [&] {
     SqliteDb db(record, SqliteDb::Mode::kReadOnly);
     Json json = {{"format", "touchdown flight"},
                  {"version", 1},
@@ -72,11 +72,7 @@ Json FlightDocument(const std::string& record, const std::string& name,
     json["samples"]["clearance"] = ClearanceOf(flight, json["samples"]["vehicle"]);
     json["steps"] = StepsDocument(flight, registries, done);
     return json;
-  } catch (const SqliteError& error) {
-    throw BadInput(fmt::format("{}: not a record that this build reads ({}).", name, error.what()));
-  } catch (const std::invalid_argument& error) {
-    throw BadInput(fmt::format("{}: {}.", name, error.what()));
-  }
+  });
 }
 
 }  // namespace touchdown::evaluation

@@ -447,13 +447,7 @@ RecordedFlight ReadRecord(const std::string& path, const std::vector<std::string
   if (!std::filesystem::is_regular_file(path)) {
     throw BadInput(fmt::format("{}: there is no such record.", path));
   }
-  try {
-    return ReadAll(path, overrides, registries);
-  } catch (const SqliteError& error) {
-    throw BadInput(fmt::format("{}: not a record that this build reads ({}).", path, error.what()));
-  } catch (const std::invalid_argument& error) {
-    throw BadInput(fmt::format("{}: {}.", path, error.what()));
-  }
+  return NamingFile(path, "record", [&] { return ReadAll(path, overrides, registries); });
 }
 
 }  // namespace touchdown::evaluation

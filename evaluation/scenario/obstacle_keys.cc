@@ -126,7 +126,7 @@ const ElementKeys<MeshObstacle>& MeshKeys() {
 const ElementKeys<HeightFieldObstacle>& HeightFieldKeys() {
   static const ElementKeys<HeightFieldObstacle> keys = {
       FileKey<HeightFieldObstacle>(
-          "grey PNG of 8 or 16 bits, at most 2048 x 2048, the first row at the greatest y"),
+          "grey PNG of 8 or 16 bits, at most 1024 x 1024, the first row at the greatest y"),
       schema::Vector<2, HeightFieldObstacle>("size", schema::Above(0, 1000, "m"),
                                              "extent along x and y", TOUCHDOWN_AT(size)),
       schema::Number<HeightFieldObstacle>("height", schema::Above(0, 1000, "m"),

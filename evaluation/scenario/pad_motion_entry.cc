@@ -50,7 +50,8 @@ PadMotionEntry Motion(const char* name, Kind kind, const char* summary) {
     } catch (const std::invalid_argument& error) {
       const std::string text = error.what();
       if (kind != Kind::kWaypoints || text.starts_with("pad.")) throw;
-      throw std::invalid_argument("pad.waypoints " + setup.scenario.pad.waypoints + ": " + text);
+      const std::string file = setup.scenario.pad.waypoints + ": ";
+      throw std::invalid_argument("pad.waypoints " + (text.starts_with(file) ? text : file + text));
     }
   };
   return entry;

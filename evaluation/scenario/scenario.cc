@@ -16,6 +16,7 @@
 #include "evaluation/base/sqlite_db.h"
 #include "evaluation/base/suggestion.h"
 #include "evaluation/base/words.h"
+#include "evaluation/base/yaml_text.h"
 #include "evaluation/scenario/obstacle_keys.h"
 #include "evaluation/scenario/scenario_check.h"
 #include "evaluation/scenario/scenario_schema.h"
@@ -169,27 +170,6 @@ class Reader {
   const Keys& keys_;
 };
 
-// `load` gives the YAML documents. Messages call the file `path` and its kind `what`.
-template <typename Load>
-YAML::Node OneDocument(const std::string& path, const Load& load,
-                       const std::string& what = "scenario") {
-  try {
-    const std::vector<YAML::Node> documents = load();
-    if (documents.empty() || documents.front().IsNull()) {
-      throw BadInput(fmt::format("{}: the {} file holds no key.", path, what));
-    }
-    if (documents.size() > 1) {
-      throw BadInput(fmt::format("{}: the {} file holds {} YAML documents; allowed is one.", path,
-                                 what, documents.size()));
-    }
-    return documents.front();
-  } catch (const YAML::BadFile&) {
-    throw BadInput(fmt::format("{}: the {} file cannot be read.", path, what));
-  } catch (const YAML::Exception& error) {
-    throw BadInput(fmt::format("{}:{}: {}.", path, error.mark.line + 1, error.msg));
-  }
-}
-
 void ApplyOverride(const std::string& text, const Keys& keys, ScenarioSource* source) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || equals == 0) {
@@ -197,12 +177,7 @@ void ApplyOverride(const std::string& text, const Keys& keys, ScenarioSource* so
   }
   const std::string name = text.substr(0, equals);
   const std::string file = "--set " + text;
-  YAML::Node value;
-  try {
-    value = YAML::Load(text.substr(equals + 1));
-  } catch (const YAML::Exception& error) {
-    throw BadInput(fmt::format("{}: {}.", file, error.msg));
-  }
+  const YAML::Node value = ParseYaml(text.substr(equals + 1), file, false);
   Where where;
   where.file = file;
   Reader(source, file, false, keys).ReadEntry(name, value, where);
@@ -213,15 +188,14 @@ void ApplyOverride(const std::string& text, const Keys& keys, ScenarioSource* so
 void ReadAirframe(const Keys& keys, ScenarioSource* source) {
   const std::string path = AirframeFile(source->scenario.vehicle);
   if (path.empty()) return;
-  const auto load = [&path] { return YAML::LoadAllFromFile(path); };
-  const YAML::Node root = OneDocument(path, load, "airframe");
+  const YAML::Node root = ReadYamlFile(path, "airframe");
   ScenarioSource beside;
   beside.scenario = source->scenario;
   Reader(&beside, path, true, keys).ReadMap(root, "airframe", Where{path, 0});
   for (const auto& key : keys) {
     const auto said = beside.where.find(key.name);
     if (said == beside.where.end() || source->where.count(key.name) != 0) continue;
-    key.set(source->scenario, YAML::Load(key.get(beside.scenario)), said->second);
+    key.set(source->scenario, ParseYaml(key.get(beside.scenario), path), said->second);
     source->where.insert(*said);
   }
 }
@@ -316,15 +290,13 @@ Scenario LoadScenario(const std::string& path, const std::vector<std::string>& o
                     "`touchdown replay`.",
                     path));
   }
-  const auto load = [&path] { return YAML::LoadAllFromFile(path); };
-  return Complete(OneDocument(path, load), std::filesystem::path(path).stem().string(), path,
+  return Complete(ReadYamlFile(path, "scenario"), std::filesystem::path(path).stem().string(), path,
                   overrides, registries);
 }
 
 Scenario ParseScenario(const std::string& text, const std::string& name, const std::string& file,
                        const std::vector<std::string>& overrides, const Registries& registries) {
-  const auto load = [&text] { return YAML::LoadAll(text); };
-  return Complete(OneDocument(file, load), name, file, overrides, registries);
+  return Complete(ParseYaml(text, file), name, file, overrides, registries);
 }
 
 std::string DumpScenario(const Scenario& scenario) {

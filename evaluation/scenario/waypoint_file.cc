@@ -6,18 +6,19 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
+#include <sstream>
 #include <stdexcept>
 #include <system_error>
 
 #include <fmt/format.h>
 
 #include "evaluation/base/words.h"
+#include "sim/base/input_file.h"
 
 namespace touchdown::evaluation {
 namespace {
 
+constexpr std::size_t kMostCsvBytes = 16 << 20;
 constexpr double kFarthest = 1e4;  // [m], [s]
 constexpr double kFastest = 20.0;  // [m/s]
 
@@ -124,13 +125,12 @@ std::vector<sim::PadWaypoint> ReadWaypoints(std::istream& text) {
 }
 
 std::vector<sim::PadWaypoint> ReadWaypointFile(const std::string& path) {
-  std::error_code unknown;
-  if (std::filesystem::is_directory(path, unknown)) {
-    throw std::invalid_argument("it is a directory; it must be a CSV file");
+  std::istringstream file(sim::ReadInputFile(path, kMostCsvBytes));
+  try {
+    return ReadWaypoints(file);
+  } catch (const std::invalid_argument& error) {
+    sim::RefuseFile(path, error.what());
   }
-  std::ifstream file(path);
-  if (!file) throw std::invalid_argument("it cannot be read");
-  return ReadWaypoints(file);
 }
 
 std::string WaypointText(const std::vector<sim::PadWaypoint>& points) {

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <limits>
 #include <map>
@@ -21,6 +20,7 @@
 #include "evaluation/base/build_info.h"
 #include "evaluation/scenario/obstacle_keys.h"
 #include "planning/map/octomap_cells.h"
+#include "sim/base/input_file.h"
 #include "sim/obstacles/mesh_shapes.h"
 #include "sim/obstacles/world_files.h"
 
@@ -85,7 +85,7 @@ std::vector<sim::Obstacle> Read(const HeightFieldObstacle& spec) {
 }
 
 std::vector<sim::Obstacle> Read(const OctomapObstacle& spec) {
-  std::ifstream file(spec.file, std::ios::binary);
+  std::istringstream file(sim::ReadInputFile(spec.file, planning::kMostMapBytes));
   planning::OccupiedCells occupied;
   try {
     occupied = planning::ReadOccupiedCells(file);
@@ -170,12 +170,11 @@ std::string WorldHash(const Scenario& scenario) {
     using Element = typename std::decay_t<decltype(elements)>::value_type;
     if constexpr (kIsFile<Element>) {
       for (const Element& spec : elements) {
-        std::ifstream file(spec.file, std::ios::binary);
-        std::ostringstream text;
-        if (!(text << file.rdbuf())) {
-          throw BadInput(fmt::format("{}: {}: it cannot be read.", name, spec.file));
+        try {
+          bytes += sim::ReadInputFile(spec.file, sim::kMostInputBytes) + '\0';
+        } catch (const std::invalid_argument& error) {
+          throw BadInput(fmt::format("{}: {}.", name, error.what()));
         }
-        bytes += text.str() + '\0';
       }
     }
   });

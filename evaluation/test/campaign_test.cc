@@ -280,7 +280,7 @@ TEST_F(CampaignFiles, ATrialWithoutItsTimingIsNoResult) {
   SqliteDb db(At("a.db"), SqliteDb::Mode::kReadWrite);
   db.Execute("DELETE FROM timing WHERE trial = 0");
   EXPECT_THAT([&] { ReadTrials(db, false); },
-              ThrowsMessage<SqliteError>(HasSubstr("trial 0 has no timing")));
+              ThrowsMessage<std::invalid_argument>(HasSubstr("trial 0 has no timing")));
 }
 
 TEST_F(CampaignFiles, ATrialThatThrowsIsARowAndNotTheEnd) {

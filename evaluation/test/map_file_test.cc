@@ -158,7 +158,7 @@ TEST_F(MapFile, AMapThatCannotBeUsedIsBadInput) {
     EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1);
   };
   refuses(Path("nowhere.bt"), "cannot be read (No such file");
-  refuses(Path(""), "this is a directory");
+  refuses(Path(""), "it is a directory");
   std::ofstream(Path("text.bt")) << "Hello.\n";
   refuses(Path("text.bt"), "it is no OctoMap file");
   octomap::OcTree coarse(99.97);

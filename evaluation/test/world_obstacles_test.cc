@@ -179,8 +179,15 @@ TEST_F(WorldObstacles, OtherFilesAreRefusedToo) {
   whole << in.rdbuf();
   EXPECT_THAT(heights(Write("half.png", whole.str().substr(0, 9000)), ", height: 2"),
               HasSubstr("half.png"));
-  EXPECT_THAT(heights(std::string(TOUCHDOWN_SOURCE_DIR) + "/docs/landing.png", ", height: 2"),
-              HasSubstr("no grey PNG"));
+  // 1025 x 4, cut short behind the head: the size is refused before anything is decoded.
+  std::string wide = whole.str();
+  wide.replace(16, 17, std::string("\0\0\4\1\0\0\0\4\x08\0\0\0\0\xda\x6a\x79\x64", 17));
+  EXPECT_THAT(heights(Write("wide.png", wide), ", height: 2"), HasSubstr("at most 1024 x 1024"));
+  EXPECT_THAT(heights("/dev/zero", ", height: 2"), HasSubstr("/dev/zero: "));
+  EXPECT_THAT(
+      heights(std::string(TOUCHDOWN_SOURCE_DIR) + "/docs/notebooks/05_profile_latency_13_2.png",
+              ", height: 2"),
+      HasSubstr("no grey PNG"));
   EXPECT_THAT(Refusal("obstacles: {octomaps: [{file: " + Write("no.bt", "no map") + "}]}\n"),
               HasSubstr("no.bt"));
   for (const char* res : {"-0.1", "0", "nan", "1e-12"}) {

@@ -163,13 +163,8 @@ FlightTrack::FlightTrack(const std::string& record_path) {
     beliefs_ = ReadBeliefs(db);
     events_ = ReadEvents(db);
     touchdown_ = ReadTouchdown(db);
-  } catch (const SqliteError& error) {
-    throw BadInput(
-        fmt::format("{}: not a record that this build reads ({}).", record_path, error.what()));
-  } catch (const nlohmann::json::exception&) {
-    throw BadInput(fmt::format("{}: its result_json lacks a figure.", record_path));
-  } catch (const std::invalid_argument& error) {
-    throw BadInput(fmt::format("{}: {}.", record_path, error.what()));
+  } catch (...) {
+    RethrowNaming(record_path, "record");
   }
 }
 

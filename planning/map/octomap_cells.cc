@@ -2,7 +2,6 @@
 #include "planning/map/octomap_cells.h"
 
 #include <cmath>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 
@@ -18,9 +17,7 @@ constexpr std::size_t kMostCells = 5'000'000;
 }  // namespace
 
 OccupiedCells ReadOccupiedCells(std::istream& in) {
-  std::ostringstream text;
-  text << in.rdbuf();
-  const std::string bytes = text.str();
+  const std::string bytes = BytesOf(in);
   const OctomapFile file = CheckOctomapFile(bytes);
   OccupiedCells occupied{file.resolution, {}};
   octomap::OcTree tree(file.resolution);

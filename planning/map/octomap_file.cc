@@ -18,6 +18,7 @@ namespace touchdown::planning {
 namespace {
 
 constexpr int kTreeDepth = 16;
+constexpr std::uint64_t kMostNodes = 16 << 20;
 
 [[noreturn]] void Refuse(const std::string& sentence) { throw std::invalid_argument(sentence); }
 
@@ -80,6 +81,19 @@ std::string_view TakeLine(std::string_view* text) {
 
 }  // namespace
 
+std::string BytesOf(std::istream& in) {
+  constexpr std::size_t kAtATime = 1 << 20;
+  std::string bytes;
+  while (in && bytes.size() <= kMostMapBytes) {
+    const std::size_t size = bytes.size();
+    bytes.resize(size + kAtATime);
+    in.read(bytes.data() + size, kAtATime);
+    bytes.resize(size + static_cast<std::size_t>(in.gcount()));
+  }
+  if (bytes.size() > kMostMapBytes) Refuse("it is larger than the 128 MiB that are read");
+  return bytes;
+}
+
 OctomapFile CheckOctomapFile(std::string_view file) {
   OctomapFile result = {MapFormat::kLogOdds, 0.0, {}};
   if (file.substr(0, kOctomapBinaryHead.size()) == kOctomapBinaryHead) {
@@ -103,6 +117,9 @@ OctomapFile CheckOctomapFile(std::string_view file) {
   if (!(result.resolution >= 1e-3 && result.resolution <= 100.0)) {
     Refuse("its resolution is " + std::to_string(result.resolution) +
            " m; allowed is [0.001, 100] m");
+  }
+  if (size > kMostNodes) {
+    Refuse("its header says " + std::to_string(size) + " nodes; allowed are 16 million");
   }
   NodeWalk walk(file);
   if (size > 0) {

@@ -2,7 +2,6 @@
 // Cell (x, y, z) of the rolling map's lattice is OctoMap's key (x + 32768, ...). Log-odds are stored
 // as floats that are whole steps of the rolling map, so that they come back exactly.
 #include <cmath>
-#include <sstream>
 #include <string>
 
 #include <octomap/octomap.h>
@@ -145,9 +144,7 @@ void PriorTree::ForEachObstacle(const std::function<void(const CellCube&)>& visi
 }
 
 void PriorTree::Read(std::istream& in) {
-  std::ostringstream text;
-  text << in.rdbuf();
-  const std::string bytes = text.str();
+  const std::string bytes = BytesOf(in);
   const OctomapFile file = CheckOctomapFile(bytes);
   std::unique_ptr<octomap::OcTree> tree = impl_->NewTree();
   ReadNodes(file, tree.get());

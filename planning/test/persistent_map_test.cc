@@ -316,6 +316,9 @@ TEST(PersistentMap, RefusesWhatItCannotUseWithASentence) {
   EXPECT_THAT(Refusal("solid cube\n"), HasSubstr("it is no OctoMap file"));
   EXPECT_THAT(Refusal("# Octomap OcTree file\nid OcTree\nsize 0\nres 0\ndata\n"),
               HasSubstr("its resolution is 0.0"));
+  EXPECT_THAT(Refusal("# Octomap OcTree file\nid OcTree\nsize 16777217\nres 0.1\ndata\n"),
+              HasSubstr("16777217 nodes; allowed are 16 million"));
+  EXPECT_THAT(Refusal(std::string(kMostMapBytes + 1, '#')), HasSubstr("larger than the 128 MiB"));
   std::stringstream colour;
   octomap::ColorOcTree colours(0.1);
   colours.updateNode(0.0, 0.0, 0.0, true);

@@ -2,20 +2,23 @@
 // By libpng without any change of values: no gamma, no palette, 16 bits stay 16.
 #include <array>
 #include <csetjmp>
-#include <cstdio>
 #include <cstring>
 #include <memory>
 #include <stdexcept>
+#include <string_view>
 
 #include <png.h>
 
 #include "estimation/base/argument_check.h"
+#include "sim/base/input_file.h"
 #include "sim/obstacles/mesh_shapes.h"
 #include "sim/obstacles/world_files.h"
 
 namespace touchdown::sim {
 namespace {
 
+constexpr std::size_t kMostPngBytes = 16
+                                      << 20;  // of 1024 x 1024 pixels, with room for other chunks
 constexpr double kThickness = 0.5;  // below the lowest height [m]
 
 struct Png {
@@ -26,8 +29,15 @@ struct Png {
   std::array<char, 80> why{};  // as libpng says, to be read when its frames are gone
 };
 
+void TakeBytes(png_structp read, png_bytep to, std::size_t count) {
+  auto& rest = *static_cast<std::string_view*>(png_get_io_ptr(read));
+  if (rest.size() < count) png_error(read, "it ends too early");
+  std::memcpy(to, rest.data(), count);
+  rest.remove_prefix(count);
+}
+
 // libpng's errors jump to here: nothing with a destructor lives in this function.
-void Decode(std::FILE* file, Png* png) {
+void Decode(std::string_view file, Png* png) {
   png_structp read = png_create_read_struct(
       PNG_LIBPNG_VER_STRING, png,
       [](png_structp in, png_const_charp why) {
@@ -42,8 +52,8 @@ void Decode(std::FILE* file, Png* png) {
     return;
   }
   if (setjmp(png_jmpbuf(read)) == 0) {
-    png_init_io(read, file);
-    png_set_user_limits(read, 2048, 2048);
+    png_set_read_fn(read, &file, TakeBytes);
+    png_set_user_limits(read, HeightGrid::kMostSide, HeightGrid::kMostSide);
     png_read_info(read, info);
     png->width = png_get_image_width(read, info);
     png->height = png_get_image_height(read, info);
@@ -71,12 +81,10 @@ void Decode(std::FILE* file, Png* png) {
 Obstacle ObstacleOfHeightFile(const std::string& path, const Eigen::Vector2d& size, double height,
                               const Placement& placement) {
   estimation::CheckAbove("height of a height field's white [m]", height, 0.0, 1000.0);
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
-                                                             std::fclose);
-  if (file == nullptr) RefuseFile(path, "it cannot be opened");
   Png png;
-  Decode(file.get(), &png);
-  if (!png.error.empty()) RefuseFile(path, "it is no sound PNG of at most 2048 x 2048: " + png.error);
+  Decode(ReadInputFile(path, kMostPngBytes), &png);
+  if (!png.error.empty())
+    RefuseFile(path, "it is no sound PNG of at most 1024 x 1024: " + png.error);
   if (png.color != PNG_COLOR_TYPE_GRAY || png.bits < 8) {
     RefuseFile(path, "it is no grey PNG of 8 or 16 bits");
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cmath>
+#include <filesystem>
 #include <stdexcept>
 #include <utility>
 
@@ -8,6 +9,7 @@
 #include <assimp/scene.h>
 
 #include "estimation/base/argument_check.h"
+#include "sim/base/input_file.h"
 #include "sim/obstacles/mesh_shapes.h"
 #include "sim/obstacles/world_files.h"
 
@@ -18,20 +20,19 @@ constexpr std::size_t kMostTriangles = 2'000'000;
 
 }  // namespace
 
-void RefuseFile(const std::string& path, const std::string& why) {
-  throw std::invalid_argument(path + ": " + why);
-}
-
 std::vector<Obstacle> ObstaclesOfMeshFile(const std::string& path, double scale,
                                           const Placement& placement) {
   estimation::CheckAbove("scale of a mesh", scale, 0.0, 1e6);
   // What its name does not hold could change unseen.
   if (path.ends_with(".gltf")) RefuseFile(path, "it keeps its mesh in another file; allowed is .glb");
+  const std::string bytes = ReadInputFile(path, kMostInputBytes);
+  if (bytes.empty()) RefuseFile(path, "it is empty");
   Assimp::Importer importer;
   // The parts of a scene at their places, each polygon in triangles. Points and lines are left out: they are no solids.
-  const aiScene* scene =
-      importer.ReadFile(path, aiProcess_ValidateDataStructure | aiProcess_Triangulate |
-                                  aiProcess_PreTransformVertices);
+  const aiScene* scene = importer.ReadFileFromMemory(
+      bytes.data(), bytes.size(),
+      aiProcess_ValidateDataStructure | aiProcess_Triangulate | aiProcess_PreTransformVertices,
+      std::filesystem::path(path).extension().c_str());
   if (scene == nullptr) RefuseFile(path, importer.GetErrorString());
   std::vector<Eigen::Vector3d> corners;
   std::vector<Eigen::Vector3i> triangles;

@@ -87,8 +87,8 @@ TriangleMesh BoxMesh(const Eigen::Vector3d& half_extents, const Placement& place
 
 TriangleMesh HeightFieldMesh(const HeightGrid& grid, const Eigen::Vector2d& size, double thickness,
                              const Placement& placement) {
-  estimation::CheckWithin("height field: columns", grid.columns, 2, 2048);
-  estimation::CheckWithin("height field: rows", grid.rows, 2, 2048);
+  estimation::CheckWithin("height field: columns", grid.columns, 2, HeightGrid::kMostSide);
+  estimation::CheckWithin("height field: rows", grid.rows, 2, HeightGrid::kMostSide);
   const double wanted = static_cast<double>(grid.columns) * grid.rows;
   estimation::CheckWithin("height field: number of heights",
                           static_cast<double>(grid.heights.size()), wanted, wanted);

@@ -15,7 +15,8 @@ TriangleMesh BoxMesh(const Eigen::Vector3d& half_extents, const Placement& place
 
 /// Heights on a grid, between which the surface is flat in triangles.
 struct HeightGrid {
-  int columns = 0, rows = 0;    ///< each in [2, 2048]
+  static constexpr int kMostSide = 1024;  ///< two million triangles, as a mesh
+  int columns = 0, rows = 0;              ///< each in [2, kMostSide]
   std::vector<double> heights;  ///< [row * columns + column] [m]; row 0 is at the greatest y, column 0 at the least x
 };
 

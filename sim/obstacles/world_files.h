@@ -14,7 +14,7 @@ namespace touchdown::sim {
 
 /// The solids of a triangle mesh, in any format that assimp reads: OBJ, STL, PLY, DAE among others. Lengths in the file
 /// times `scale` are metres.
-/// @throws std::invalid_argument naming file and place: not to be read, more than two million triangles, open,
+/// @throws std::invalid_argument naming file and place: not to be read, more than 256 MiB or two million triangles, open,
 /// degenerate, not finite.
 std::vector<Obstacle> ObstaclesOfMeshFile(const std::string& path, double scale,
                                           const Placement& placement);
@@ -29,8 +29,5 @@ Obstacle ObstacleOfHeightFile(const std::string& path, const Eigen::Vector2d& si
 /// is turned by `yaw` about z and stands at `p_WF`. Neighbours are joined, so there are far fewer boxes than cells.
 std::vector<Obstacle> BoxesOfCells(std::vector<Eigen::Vector3i> cells, double side,
                                    const Eigen::Vector3d& p_WF, double yaw);
-
-/// @throws std::invalid_argument "<path>: <why>".
-[[noreturn]] void RefuseFile(const std::string& path, const std::string& why);
 
 }  // namespace touchdown::sim

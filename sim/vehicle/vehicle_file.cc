@@ -8,9 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <stdexcept>
 #include <string_view>
@@ -18,6 +15,7 @@
 #include <Eigen/Geometry>
 
 #include "estimation/base/argument_check.h"
+#include "sim/base/input_file.h"
 #include "sim/mujoco/mujoco_model.h"
 
 namespace touchdown::sim {
@@ -25,6 +23,7 @@ namespace {
 
 using estimation::VehicleModel;
 
+constexpr std::size_t kMostMjcfBytes = 16 << 20;
 constexpr double kTolerance = 1.0e-6;
 constexpr double kUnevenFeet = 1.0e-4;        // [m]
 constexpr double kLeastThrustToWeight = 1.2;  // below, there is nothing left to steer with
@@ -258,15 +257,8 @@ bool TurnsEnough(const estimation::VehicleModel& model) {
 }
 
 std::string ReadVehicleFile(const std::string& path) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) {
-    throw std::invalid_argument("vehicle file " + path + " is not there, or no file");
-  }
-  std::ifstream file(path, std::ios::binary);
-  std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-  if (!file.is_open() || file.bad() || text.empty()) {
-    throw std::invalid_argument("vehicle file " + path + " cannot be read or is empty");
-  }
+  std::string text = ReadInputFile(path, kMostMjcfBytes);
+  if (text.empty()) RefuseFile(path, "it is empty");
   return text;
 }
 

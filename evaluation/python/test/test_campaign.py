@@ -176,3 +176,40 @@ def in_two_ranks(program, folder, *arguments):
     if "built without MPI" in ranks.stderr:
         pytest.skip("the program is built without MPI")
     return ranks
+
+
+# What a stranger, or a broken disk, may have changed in a file of trials.
+TAMPERED = {
+    "a text for a number": "UPDATE trial SET min_clearance_m = 'x'",
+    "counts that are no JSON": "UPDATE trial SET replans_by_status = '{'",
+    "counts that are a list": "UPDATE trial SET replans_by_reason = '[1]'",
+    "counts that are texts": "UPDATE trial SET replans_by_reason = '{\"a\": \"b\"}'",
+    "an outcome that there is not": "UPDATE trial SET outcome = 'x'",
+    "no timing": "DELETE FROM timing",
+    "a trial that was not planned": "UPDATE trial SET trial = 99; UPDATE timing SET trial = 99; DELETE FROM replan_time",
+    "times of no trial": "UPDATE replan_time SET trial = 99",
+    "no table": "DROP TABLE cell_value",
+    "another column": "ALTER TABLE trial RENAME COLUMN seed TO x",
+    "a trigger": "CREATE TRIGGER trap BEFORE INSERT ON cell BEGIN SELECT RAISE(FAIL, 'trap'); END",
+    "rows without end": "DROP TABLE cell_value; CREATE VIEW cell_value(cell, key, value) AS "
+    "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n) SELECT i, i, i FROM n",
+}
+
+
+@pytest.fixture(scope="module")
+def sound_file(program, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("tampered")
+    subprocess.run([program, *sweep(1, "sound.db")], cwd=folder, check=True, capture_output=True)
+    return folder / "sound.db"
+
+
+@pytest.mark.parametrize("change", TAMPERED.values(), ids=TAMPERED)
+def test_a_file_that_was_tampered_with_is_refused_by_name(run, sound_file, tmp_path, change):
+    shutil.copy(sound_file, tmp_path / "a.db")
+    with contextlib.closing(sqlite3.connect(tmp_path / "a.db")) as db:
+        db.executescript(change)
+    for command in (sweep(1, "a.db"), ("merge", "b.db", "a.db")):
+        done = run(*command, cwd=tmp_path)
+        assert done.returncode == 2, done.stderr
+        assert done.stderr.startswith("touchdown: a.db: ") and done.stderr.count("\n") == 1, done.stderr
+        assert not (tmp_path / "b.db").exists()

@@ -13,7 +13,7 @@ namespace touchdown::evaluation {
 
 HostileTimes ReadHostileTimes(const HostileOptions& options, const std::string& path) {
   HostileTimes times;
-  try {
+  NamingFile(path, kFileOfTrials, [&] {
     SqliteDb db(path, SqliteDb::Mode::kReadOnly);
     Manifest manifest = ReadManifest(db, path);
     if (manifest["campaign"] != "study hostile" ||
@@ -25,9 +25,7 @@ HostileTimes ReadHostileTimes(const HostileOptions& options, const std::string& 
     while (rows.Step()) {
       times.emplace(static_cast<std::uint64_t>(rows.Integer(0)), rows.Real(1));
     }
-  } catch (const SqliteError& error) {
-    throw BadInput(fmt::format("--against {}.", error.what()));
-  }
+  });
   return times;
 }
 

@@ -18,6 +18,9 @@ enum class MapFormat {
   kBinary,   ///< .bt: free or occupied; a cell that is neither is left out
 };
 
+/// Largest file that is read. It may hold 16 million nodes, each of which takes OctoMap 50 bytes.
+inline constexpr std::size_t kMostMapBytes = 128 << 20;
+
 /// The cells from `low` on, `side` of them along each axis.
 struct CellCube {
   CellIndex low;
