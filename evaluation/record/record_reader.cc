@@ -25,6 +25,7 @@
 namespace touchdown::evaluation {
 namespace {
 
+constexpr std::uintmax_t kMostBytesOfRecord = 512 << 20;
 constexpr int kMostPoints = 10000;           // of a spline
 constexpr int kMostAttempts = 1000;          // of a step
 constexpr double kLongest = 1000.0;          // plan [s]
@@ -446,6 +447,9 @@ RecordedFlight ReadRecord(const std::string& path, const std::vector<std::string
   CheckOverrides(overrides);
   if (!std::filesystem::is_regular_file(path)) {
     throw BadInput(fmt::format("{}: there is no such record.", path));
+  }
+  if (std::filesystem::file_size(path) > kMostBytesOfRecord) {
+    throw BadInput(fmt::format("{}: it is larger than the 512 MiB that are read.", path));
   }
   return NamingFile(path, "record", [&] { return ReadAll(path, overrides, registries); });
 }
