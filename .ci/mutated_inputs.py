@@ -18,6 +18,7 @@ import subprocess
 import sys
 import tempfile
 import time
+import zlib
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -51,6 +52,25 @@ def mutated_bytes(data, rng):
             size = rng.choice([1, 8, 64])
             data[at:at + size] = bytes(size)
     return bytes(data)
+
+
+def mutated_png(data, rng):
+    """A chunk is another one, and its checksum is right."""
+    chunks, at = [], 8
+    while at < len(data):
+        size = int.from_bytes(data[at:at + 4], "big")
+        chunks.append([data[at + 4:at + 8], data[at + 8:at + 8 + size]])
+        at += 12 + size
+    for _ in range(rng.choice([1, 2])):
+        chunk = chunks[0] if rng.random() < 0.4 else rng.choice(chunks)
+        if rng.random() < 0.2:
+            chunks.insert(rng.randrange(len(chunks) + 1), [rng.choice([b"tEXt", b"PLTE", b"zTXt", b"IDAT", chunk[0]]), rng.randbytes(40)])
+        elif chunk[0] == b"IDAT" and rng.random() < 0.7:
+            chunk[1] = zlib.compress(rng.randbytes(rng.choice([0, 100, 200_000])))
+        else:
+            chunk[1] = mutated_bytes(chunk[1], rng)
+    return data[:8] + b"".join(len(body).to_bytes(4, "big") + kind + body + zlib.crc32(kind + body).to_bytes(4, "big")
+                               for kind, body in chunks)
 
 
 def mutated_text(text, rng):
@@ -142,7 +162,8 @@ def bytes_kind(files, command):
         data = source.read_bytes()
         if source.suffix in (".obj", ".ply") and rng.random() < 0.7:
             data = mutated_text(data.decode("latin-1"), rng).encode("latin-1", "replace")
-        path.write_bytes(mutated_bytes(data, rng))
+        change = mutated_png if source.suffix == ".png" and rng.random() < 0.8 else mutated_bytes
+        path.write_bytes(change(data, rng))
         return path, command(path, rng)
     return make
 

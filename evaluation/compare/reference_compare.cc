@@ -21,6 +21,8 @@
 namespace touchdown::evaluation {
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 using solvers::ReferenceProblem;
 using solvers::SolverResult;
 using solvers::SolveStatus;
@@ -243,7 +245,6 @@ std::string ReferenceText(const ReferenceOptions& options, const ReferenceResult
 
 nlohmann::ordered_json ReferenceJson(const ReferenceOptions& options,
                                      const ReferenceResult& result) {
-  using Json = nlohmann::ordered_json;
   Json json{{"problem_set", options.set},    {"starts", options.starts},
             {"seed", options.seed},          {"max_iterations", options.max_iterations},
             {"published", result.published}, {"cells", Json::array()}};
