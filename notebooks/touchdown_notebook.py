@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the notebooks share: running the program, reading its result files without the package touchdown, and
 pictures that hold several of them together. Pictures of one result file are touchdown_report's."""
+import importlib.util
 import io
 import json
 import os
@@ -44,16 +45,18 @@ class CommandFailed(Exception):
 
 
 def program():
-    """Path of the program: TOUCHDOWN_PROGRAM, else a build in this clone, else the one on PATH."""
+    """Path of the program: TOUCHDOWN_PROGRAM, else in the installed package, in a build in this clone, on PATH."""
     named = os.environ.get("TOUCHDOWN_PROGRAM")
     built = [ROOT / "build" / preset / "bin" / "touchdown" for preset in ("release", "native")]
-    for path in [named] if named else [*built, shutil.which("touchdown")]:
+    package = importlib.util.find_spec("touchdown")
+    own = [Path(package.origin).parent / "bin" / "touchdown"] if package else []
+    for path in [named] if named else [*own, *built, shutil.which("touchdown")]:
         if path and os.access(path, os.X_OK):
             return Path(path).resolve()
     raise FileNotFoundError(
         f"{named}, the value of TOUCHDOWN_PROGRAM, is no program."
         if named
-        else "There is no program `touchdown` yet: run ./demo.sh once, or set TOUCHDOWN_PROGRAM."
+        else "There is no program `touchdown` yet: run ./demo.sh or ./python.sh once, or set TOUCHDOWN_PROGRAM."
     )
 
 

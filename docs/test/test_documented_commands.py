@@ -80,6 +80,11 @@ def after_demo(tmp_path_factory):
     return folder / "out"
 
 
+def test_demo_builds_all_that_is_installed():
+    """Pages have `cmake --install` after it. `./test.sh bare` does both in a bare system."""
+    assert re.search(r"^build_release OFF$", (ROOT / "demo.sh").read_text(), re.M), "some targets only"
+
+
 @pytest.fixture
 def folder(after_demo):
     with tempfile.TemporaryDirectory() as path:

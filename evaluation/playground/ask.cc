@@ -101,14 +101,15 @@ std::string Playground::Ask(std::string_view text) noexcept {
     } else if (what == "time") {
       const PlaygroundScene scene = SceneIn(question);
       const int steps = static_cast<int>(NumberIn(question, "steps", 1.0, kMostSteps));
-      if (const std::string key = SceneJson(scene).dump(); key != timed_scene_) {
-        timed_scene_.clear();
-        timed_ = std::make_unique<SceneStep>(scene);
-        timed_->Ask();  // makes the room that later steps keep
-        timed_scene_ = key;
+      Timed& timed = timed_[scene.backend];
+      if (const std::string key = SceneJson(scene).dump(); key != timed.scene) {
+        timed = {};
+        timed.step = std::make_unique<SceneStep>(scene);
+        timed.step->Ask();  // makes the room that later steps keep
+        timed.scene = key;
       }
-      const double mean_ms = timed_->MeanTime(steps);
-      const planning::ReplanResult& result = timed_->Ask();
+      const double mean_ms = timed.step->MeanTime(steps);
+      const planning::ReplanResult& result = timed.step->Ask();
       answer = {{"steps", steps},
                 {"mean_ms", mean_ms},
                 {"status", planning::ToString(result.status)},

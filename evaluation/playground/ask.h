@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -20,8 +21,11 @@ class Playground {
 
  private:
   std::optional<PointFlight> flight_;
-  std::unique_ptr<SceneStep> timed_;  ///< of the scene that was timed last ...
-  std::string timed_scene_;           ///< ... which is this
+  struct Timed {
+    std::string scene;
+    std::unique_ptr<SceneStep> step;
+  };
+  std::map<std::string, Timed> timed_;  ///< [backend]: what was timed last with it
 };
 
 }  // namespace touchdown::evaluation

@@ -3,6 +3,7 @@ import os
 import sqlite3
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -56,6 +57,16 @@ def test_without_a_program_the_way_to_one_is_said(monkeypatch, tmp_path):
     built.parent.mkdir(parents=True)
     built.touch(mode=0o755)
     assert nb.program() == built
+
+
+def test_the_program_of_the_installed_package_comes_before_a_build(monkeypatch, tmp_path):
+    monkeypatch.delenv("TOUCHDOWN_PROGRAM")
+    package = SimpleNamespace(origin=str(tmp_path / "touchdown" / "__init__.py"))
+    monkeypatch.setattr(nb.importlib.util, "find_spec", lambda name: package if name == "touchdown" else None)
+    assert nb.program() != tmp_path / "touchdown" / "bin" / "touchdown"
+    (tmp_path / "touchdown" / "bin").mkdir(parents=True)
+    (tmp_path / "touchdown" / "bin" / "touchdown").touch(mode=0o755)
+    assert nb.program() == tmp_path / "touchdown" / "bin" / "touchdown"
 
 
 def test_a_folder_of_its_own_without_old_results(tmp_path, monkeypatch):

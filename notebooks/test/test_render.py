@@ -3,6 +3,7 @@
 import base64
 import io
 import re
+import subprocess
 import sys
 from pathlib import Path
 
@@ -95,3 +96,17 @@ def test_outputs_become_markdown():
     assert "two words" not in render.sources(page) and "y = 2" in render.sources(page)
     with pytest.raises(ValueError, match="larger than 120000 bytes"):
         render.small(png_of_noise(1000, 1100, noisy=1000))
+
+
+def test_a_notebook_runs_in_the_environment_that_python_sh_makes(tmp_path):
+    script = (FOLDER.parent / "python.sh").read_text(encoding="utf-8")
+    kernel = re.search(r'^"\$environment/bin/python" (-m ipykernel install .*) >', script, re.M)
+    assert kernel, "it has no kernel"
+    python = tmp_path / "own" / "bin" / "python"
+    subprocess.run([sys.executable, "-m", "venv", "--system-site-packages", "--without-pip", tmp_path / "own"], check=True)
+    subprocess.run([python, *kernel[1].split()], check=True)
+    notebook = nbformat.read(FOLDER / f"{NAMES[0]}.ipynb", as_version=4)
+    notebook.cells = [nbformat.v4.new_code_cell("import sys\nprint('here:', sys.prefix)")]
+    nbformat.write(notebook, tmp_path / "where.ipynb")
+    subprocess.run([python, FOLDER / "render.py", tmp_path / "where.ipynb", tmp_path / "where.html"], check=True)
+    assert f"here: {tmp_path / 'own'}" in (tmp_path / "where.html").read_text(encoding="utf-8")

@@ -15,8 +15,8 @@ if (glue && !out) {
 }
 const folder = join(dirname(fileURLToPath(import.meta.url)), "src/playground");
 const text = (name) => readFileSync(join(folder, name), "utf8");
-const { script } = await bundle("src/playground/main.js");
-const style = text("playground.css"), html = text("playground.html");
+const { script, style: signs } = await bundle("src/playground/main.js");
+const style = signs + text("playground.css"), html = text("playground.html");
 const mark = `<!--web sources ${createHash("sha256").update(JSON.stringify([script, style, html])).digest("hex")}-->`;
 if (!out) {
   console.log(mark);

@@ -86,6 +86,11 @@ export class Flight {
     return this.modes.names[this.modes.of[this.row(t)]] ?? "";
   }
 
+  /** When feet first touch the deck; infinity: never. From then on the deck carries the vehicle, and no reference is tracked. */
+  get contact() {
+    return this.document.events.find(({ kind }) => kind === "contact")?.t ?? Infinity;
+  }
+
   /** The newest event of a kind at t; undefined: none yet. */
   eventAt(kind, t) {
     let newest;

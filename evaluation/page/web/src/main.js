@@ -2,6 +2,7 @@
 // The page: reads its flights, builds the picture, moves time.
 import { Vector3 } from "three";
 import "uplot/dist/uPlot.min.css";
+import "./signs.css";
 import { BLACK, BLUE, FLIGHTS, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILLION } from "./colours.js";
 import { Flight } from "./flight.js";
 import { DASH, resizeLines } from "./lines.js";
@@ -83,19 +84,23 @@ class Replay {
     this.makeControls();
     this.resize();
     this.seek(this.begin);
-    this.open(new URLSearchParams(location.hash.slice(1)));
+    this.draw(); // the vehicle is then where a view begins
+    this.look("follow");
+    this.play(true);
+    this.open();
+    window.addEventListener("hashchange", () => this.open());
   }
 
-  /** What an address may ask for: #t=3.2&step=17&view=top. */
-  open(asked) {
+  /** What an address may ask for: #t=3.2&step=17&view=top. A time that is asked for stands still. */
+  open() {
+    const asked = new URLSearchParams(location.hash.slice(1));
     const number = (name) => (asked.has(name) && Number.isFinite(Number(asked.get(name))) ? Number(asked.get(name)) : null);
     const step = number("step"), t = number("t");
+    if (step !== null || t !== null) this.play(false);
     if (step !== null) this.choose(step);
     if (t !== null) this.seek(t);
-    if (VIEWS.includes(asked.get("view"))) {
-      this.draw(); // the vehicle is then where the view begins
-      this.look(asked.get("view"));
-    }
+    this.draw();
+    this.look(VIEWS.includes(asked.get("view")) ? asked.get("view") : this.views.name);
   }
 
   get shown() {
@@ -194,7 +199,7 @@ class Replay {
   play(on) {
     this.playing = on;
     if (on && this.t >= this.end) this.seek(this.begin);
-    at("play").textContent = on ? "⏸" : "▶";
+    at("play").firstChild.className = on ? "sign pause" : "sign play";
     at("play").title = on ? "Pause (space)" : "Play (space)";
     this.before = undefined;
   }

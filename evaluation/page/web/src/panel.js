@@ -125,7 +125,7 @@ export class Panel {
       metres(above),
       `${Math.hypot(vehicle.vx[i], vehicle.vy[i], vehicle.vz[i]).toFixed(2)} m/s`,
       samples.clearance.length ? metres(samples.clearance[i]) : "no obstacles",
-      metres(Math.hypot(reference.px[i] - vehicle.px[i], reference.py[i] - vehicle.py[i], reference.pz[i] - vehicle.pz[i])),
+      metres(vehicle.t[i] < flight.contact ? Math.hypot(reference.px[i] - vehicle.px[i], reference.py[i] - vehicle.py[i], reference.pz[i] - vehicle.pz[i]) : null),
     ];
     const blows = wind < 0.005 ? "none" : `${wind.toFixed(1)} m/s`;
     if (flight.goal) {

@@ -5,6 +5,7 @@ import { indexAt } from "./flight.js";
 import { BLACK, BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILLION } from "./colours.js";
 
 const SECOND = " (2)";
+const AXIS = { font: "10px sans-serif", grid: { stroke: "#eee" } };
 const distance = (a, b, i) => Math.hypot(a.px[i] - b.px[i], a.py[i] - b.py[i], a.pz[i] - b.pz[i]);
 
 /** What is plotted of a flight: [title, unit, [times, [name, colour, values] ...]]. */
@@ -26,7 +27,7 @@ function figuresOf(flight) {
     ]],
     ["Errors", "m", [
       [vehicle.t, [
-        ["of tracking", BLUE, each((i) => distance(reference, vehicle, i))],
+        ["of tracking", BLUE, each((i) => (vehicle.t[i] < flight.contact ? distance(reference, vehicle, i) : null))],
         ["of own place", GREEN, each((i) => distance(believed, vehicle, i))],
         ...(flight.goal ? [] : [["of the pad", VERMILLION, each((i) => {
           const b = flight.padRow(pad_believed, vehicle.t[i]);
@@ -64,20 +65,20 @@ function figuresOf(flight) {
 /** The newest value up to an index: between the times of a series there is nothing in the joined list. */
 function newest(plot, series, index) {
   const values = plot.data[series];
-  let i = index ?? -1;
+  let i = index;
   while (i >= 0 && values[i] === undefined) --i;
   return i < 0 || values[i] === null ? "–" : Number(values[i].toPrecision(3)).toString();
 }
 
-/** uPlot wants one list of times for all series: they are joined. */
-function tableOf(figures, begin, end) {
+/** uPlot wants one list of times for all series: they are joined. `now()`: the time whose values stand where no mouse is. */
+function tableOf(figures, begin, end, now) {
   const tables = [[[begin, end]]], series = [{}];
   figures.forEach((parts, number) => {
     for (const [times, list] of parts) {
       if (times.length === 0 || list.length === 0) continue;
       tables.push([times, ...list.map(([, , values]) => values)]);
       for (const [name, colour] of list) {
-        series.push({ label: number > 0 ? name + SECOND : name, stroke: colour, width: 1.4, spanGaps: false, value: (plot, value, series, index) => newest(plot, series, index), points: { show: false }, dash: number > 0 ? [5, 4] : undefined });
+        series.push({ label: number > 0 ? name + SECOND : name, stroke: colour, width: 1.4, spanGaps: false, value: (plot, value, series, index) => newest(plot, series, index ?? indexAt(plot.data[0], now())), points: { show: false }, dash: number > 0 ? [5, 4] : undefined });
       }
     }
   });
@@ -87,18 +88,21 @@ function tableOf(figures, begin, end) {
 export class Plots {
   constructor(holder, flights, begin, end, seek) {
     this.plots = [];
-    this.begin = begin;
+    this.t = begin;
     const all = flights.map(figuresOf);
     all[0].forEach(([title, unit], k) => {
       const box = document.createElement("div");
       box.className = "plot";
       holder.append(box);
-      const { data, series } = tableOf(all.map((figures) => figures[k][2]), begin, end);
+      const { data, series } = tableOf(all.map((figures) => figures[k][2]), begin, end, () => this.t);
       const plot = new uPlot({
         width: 200, height: 150, series,
         title: unit ? `${title} [${unit}]` : title,
         scales: { x: { time: false, range: (u, low, high) => [low, high] }, y: { range: (u, low, high) => [Math.min(low ?? 0, 0), Math.max(high ?? 1, 1e-3) * 1.05] } },
-        axes: [{ size: 24, font: "10px sans-serif", grid: { stroke: "#eee" } }, { size: 38, font: "10px sans-serif", grid: { stroke: "#eee" } }],
+        axes: [
+          { ...AXIS, size: 24, space: 28, values: (u, times) => times.map((time) => `${Number(time.toFixed(3))} s`) },
+          { ...AXIS, size: 38, space: 16 },
+        ],
         cursor: { sync: { key: "replay", scales: ["x", null] }, drag: { x: true, y: false, dist: 6 }, points: { size: 5 } },
       }, data, box);
       // One legend for both: the second is dashed.
@@ -117,13 +121,17 @@ export class Plots {
   }
 
   resize() {
-    for (const { plot, box } of this.plots) plot.setSize({ width: Math.max(box.clientWidth, 120), height: Math.max(box.clientHeight - 56, 60) });
+    for (const { plot, box } of this.plots) {
+      const words = plot.root.querySelector(".u-title").offsetHeight + plot.root.querySelector(".u-legend").offsetHeight;
+      plot.setSize({ width: Math.max(box.clientWidth, 120), height: Math.max(box.clientHeight - words, 60) });
+    }
   }
 
   update(t) {
+    this.t = t;
     for (const { plot, now } of this.plots) {
       now.style.transform = `translateX(${plot.valToPos(t, "x")}px)`;
-      if (plot.cursor.left < 0) plot.setLegend({ idx: indexAt(plot.data[0], t) }); // else the mouse tells where
+      plot.setLegend();
     }
   }
 }

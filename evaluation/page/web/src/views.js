@@ -51,7 +51,7 @@ export class Views {
     if (name === "follow") {
       const back = new Vector3(-1, 0, 0).applyQuaternion(vehicle.body.quaternion).setZ(0).normalize();
       this.controls.target.copy(body);
-      this.camera.position.copy(body).addScaledVector(back, 3.2).add(new Vector3(0, 0, 1.4));
+      this.camera.position.copy(body).addScaledVector(back, 3.5).add(new Vector3(0, 0, 4));
     }
     if (name === "top") {
       this.controls.target.copy(body).setZ(0);

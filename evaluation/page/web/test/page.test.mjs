@@ -40,9 +40,11 @@ async function open(name) {
   return page;
 }
 
+/** Opened, and stopped. */
 async function ready(name) {
   const page = await open(name);
   await page.waitForSelector("body.ready", { timeout: 60000 });
+  await page.evaluate(() => replay.play(false));
   return page;
 }
 
@@ -232,6 +234,7 @@ describe("a page of one flight", () => {
     await other.evaluate(() => replay.draw());
     assert.match(await other.$eval(".step-title", (element) => element.textContent), /^Step 9 of \d+$/);
     assert.equal(await other.$eval("#view", (view) => view.value), "top");
+    assert.equal(await other.evaluate(() => replay.playing), false);
     // From above the world's x is to the right and its y upwards.
     const [x, y] = await other.evaluate(() => {
       const { camera } = replay.views, p = replay.all[0].vehicle.body.position;
@@ -241,6 +244,25 @@ describe("a page of one flight", () => {
     });
     assert.ok(x[0] > 0.02 && Math.abs(x[1]) < 0.3 * x[0], `${x}`);
     assert.ok(y[1] > 0.02 && Math.abs(y[0]) < 0.3 * y[1], `${y}`);
+    // And so it does where the address of an open page is changed.
+    await other.evaluate(() => { replay.play(true); location.hash = "#step=12"; });
+    await other.waitForFunction(() => document.querySelector(".step-title").textContent.startsWith("Step 12 of"), { timeout: 5000 });
+    assert.deepEqual(await other.evaluate(() => [replay.playing, replay.t, document.getElementById("view").value]), [false, await other.evaluate(() => replay.flight.stepTimes[12]), "top"]);
+    await other.close();
+  });
+
+  test("opens behind the vehicle, which is in the middle, and plays", async () => {
+    const other = await open("one.html");
+    await other.waitForSelector("body.ready", { timeout: 60000 });
+    await other.waitForFunction(() => replay.playing && replay.t > replay.begin, { timeout: 20000 });
+    const [x, y, wide] = await other.evaluate(() => {
+      replay.draw();
+      const { camera } = replay.views, { vehicle } = replay.all[0], middle = vehicle.body.position;
+      const seen = middle.clone().project(camera), { elements } = camera.matrixWorld;
+      const beside = middle.clone().set(middle.x + 0.3 * elements[0], middle.y + 0.3 * elements[1], middle.z + 0.3 * elements[2]).project(camera);
+      return [seen.x, seen.y, (beside.x - seen.x) * replay.size[0]];
+    });
+    assert.ok(Math.abs(x) < 0.2 && Math.abs(y) < 0.3 && wide > 30, `${[x, y]}, ${wide} pixels wide`);
     await other.close();
   });
 
@@ -255,6 +277,42 @@ describe("a page of one flight", () => {
     const now = await page.$eval("#now", (element) => element.textContent.match(/horizontally to the pad([\d.]+) mfeet above the deck(-?[\d.]+) m/).slice(1).map(Number));
     assert.ok(Math.abs(beside - now[0]) < 0.05 && Math.abs(above - now[1]) < 0.05, `${[beside, above]} is not ${now}`);
   });
+
+  test("has plots with all their values, also before and after the mouse is there, and with figures at their axes", async () => {
+    const other = await ready("one.html");
+    const values = () => other.$$eval(".plot", (plots) => plots.map((plot) => [...plot.querySelectorAll(".u-value")].slice(1).map((value) => value.textContent)));
+    await other.evaluate(() => replay.seek(replay.begin));
+    await other.evaluate(() => new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn))));
+    for (const plot of [0, 1, 5]) assert.ok((await values())[plot].every((value) => /^-?[\d.e-]+$/.test(value)), `${(await values())[plot]}`);
+    await slide(other, 2.5);
+    const before = await values();
+    assert.ok(before.flat().length > 15 && before.flat().every((value) => /^-?[\d.e-]+$/.test(value)), `${before}`);
+    const box = await other.$eval(".u-over", (over) => { const { left, top, width, height } = over.getBoundingClientRect(); return { left, top, width, height }; });
+    await other.mouse.move(box.left + 0.9 * box.width, box.top + box.height / 2);
+    assert.notDeepEqual(await values(), before);
+    await other.mouse.move(300, 300);
+    assert.deepEqual(await values(), before);
+    const hidden = await other.$$eval(".u-legend", (legends) => legends.filter(({ scrollHeight, clientHeight }) => scrollHeight > clientHeight).length);
+    assert.equal(hidden, 0);
+    const figures = await other.evaluate(() => replay.plots.plots.map(({ plot }) => plot.axes.map((axis) => axis._values.filter(Boolean).length)));
+    assert.ok(figures.flat().every((count) => count >= 3), `${figures}`);
+    await other.close();
+  });
+});
+
+test("the error of tracking ends at contact", async () => {
+  const page = await ready("unkept.html");
+  const [contact, times, errors] = await page.evaluate(() => {
+    const { data, series } = replay.plots.plots[1].plot;
+    return [replay.flight.eventAt("contact", replay.end).t, data[0], data[series.findIndex(({ label }) => label === "of tracking")]];
+  });
+  const kept = times.filter((t, i) => typeof errors[i] === "number");
+  assert.ok(kept.length > 100 && Math.max(...kept) < contact && contact - Math.max(...kept) < 0.1, `${Math.max(...kept)} s, contact at ${contact} s`);
+  assert.ok(Math.max(...times) > contact + 0.5);
+  const told = async (t) => { await slide(page, t); return page.$eval("#now", (now) => now.textContent.match(/tracking error(.*?)estimate/)[1]); };
+  assert.match(await told(contact - 0.1), /^\d\.\d\d m$/);
+  assert.equal(await told(contact + 0.1), "–");
+  await page.close();
 });
 
 test("a drag in a plot is a closer look in all of them, a double click the whole again", async () => {

@@ -2,6 +2,7 @@
 // The parts of the page that need no browser.
 import assert from "node:assert/strict";
 import { test } from "node:test";
+import { readFileSync, readdirSync } from "node:fs";
 import { deflateSync } from "node:zlib";
 import { KnownCells } from "../src/map.js";
 import { Flight, indexAt } from "../src/flight.js";
@@ -36,6 +37,15 @@ test("a spline goes through its knots' points and a straight one moves evenly", 
   assert.equal(points.length, 3 * 17);
   near(points[0], 1);
   near(points[3 * 16], 5);
+});
+
+test("no letter of the pages needs a special font", () => {
+  const folder = new URL("../src/", import.meta.url);
+  for (const name of readdirSync(folder, { recursive: true }).filter((name) => /\.(js|css|html)$/.test(name))) {
+    // Latin and Greek letters and their punctuation; arrows, dingbats and emoji are drawn.
+    const rare = readFileSync(new URL(name, folder), "utf8").match(/[^\0-\u03ff\u2010-\u203a]/u);
+    assert.equal(rare, null, `${name}: ${rare?.[0]}`);
+  }
 });
 
 test("the window's cells are those of a map without a window, in whatever order steps are sought", () => {

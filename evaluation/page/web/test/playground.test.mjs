@@ -409,9 +409,9 @@ test("attempts show their rounds, half-spaces can be seen", async () => {
 test("the time of a step is measured over 100 equal steps of both solvers", async (t) => {
   await page.waitForFunction(() => /100 equal steps/.test(document.getElementById("times").textContent), { timeout: 60000 });
   const rows = await page.evaluate(() => touchdown.stopwatch.rows);
-  t.diagnostic(rows.map(({ backend, mean_ms }) => `${backend} ${mean_ms.toFixed(3)} ms`).join(", "));
+  t.diagnostic(rows.map(({ backend, least_ms }) => `${backend} ${least_ms.toFixed(3)} ms`).join(", "));
   assert.deepEqual(rows.map(({ backend, steps }) => [backend, steps]), [["banded", 100], ["lbfgs", 100]]);
-  for (const { mean_ms, cost } of rows) assert.ok(mean_ms > 0 && mean_ms < 100 && cost > 0);
+  for (const { least_ms, cost } of rows) assert.ok(least_ms > 0 && least_ms < 100 && cost > 0);
 });
 
 test("where the stopwatch gives up, that is said", async () => {

@@ -10,7 +10,7 @@ import { ARROW, ARROW_SPEED, MOST, RANGES, add, aimPad, completed, copy, heightO
 import { SCENES, sceneOfMenu } from "../src/playground/scenes.js";
 import { CellList } from "../src/playground/seen.js";
 import { Stopwatch } from "../src/playground/stopwatch.js";
-import { checksOf, eventWords, headlineOf, lengthOf, outcomeOf, rowOf } from "../src/playground/words.js";
+import { checksOf, eventWords, headlineOf, lengthOf, outcomeOf, rowOf, speedWords } from "../src/playground/words.js";
 
 const near = (a, b, error = 1e-9) => assert.ok(Math.abs(a - b) <= error, `${a} is not ${b}`);
 
@@ -240,31 +240,46 @@ test("scenes of the menu leave the first one as it was, and differ", () => {
   assert.equal(new Set(texts).size, SCENES.length);
 });
 
-/** Measures with steps of so many milliseconds, on a clock that only they move. */
-async function measure(t, step_ms) {
-  let now = 0, slow = null;
+/** Measures with steps that take so many milliseconds after so many before them, on a clock that only they move. */
+async function measure(t, takes) {
+  let now = 0, slow = null, before = 0;
   const asked = [];
   t.mock.timers.enable({ apis: ["setTimeout"] });
   t.mock.method(performance, "now", () => now);
   const ask = ({ scene: { backend }, steps }) => {
     asked.push({ backend, steps });
-    now += steps * step_ms;
-    return { steps, mean_ms: step_ms, iterations: 1, cost: 1 };
+    const mean_ms = takes(before);
+    before += steps;
+    now += steps * mean_ms;
+    return { steps, mean_ms, iterations: 1, cost: 1 };
   };
   const stopwatch = new Stopwatch(ask, ["banded", "lbfgs"], (rows, given_up) => (slow = given_up));
   stopwatch.begin(scene());
   for (let i = 0; i < 500; ++i) t.mock.timers.tick(500);
-  return { asked, slow, steps: stopwatch.rows.map(({ steps }) => steps) };
+  return { asked, slow, rows: stopwatch.rows };
 }
 
-test("the stopwatch measures one backend after the other", async (t) => {
-  const { asked, slow, steps } = await measure(t, 1);
-  assert.deepEqual(asked.map(({ backend }) => backend), [...Array(11).fill("banded"), ...Array(11).fill("lbfgs")]);
-  assert.deepEqual([slow, steps], [false, [100, 100]]);
+test("the stopwatch measures the backends by turns, and the fastest steps count", async (t) => {
+  const { asked, slow, rows } = await measure(t, (before) => (before < 50 ? 8 : 1));
+  const counted = asked.filter(({ steps }) => steps !== 3).map(({ backend }) => backend);
+  assert.ok(counted.every((backend, i) => i === 0 || backend !== counted[i - 1]), counted.join());
+  assert.deepEqual([slow, rows.map(({ steps, least_ms }) => [steps, least_ms])], [false, [[100, 1], [100, 1]]]);
+});
+
+test("times are compared only between plans of equal cost, and the steps are counted", () => {
+  const row = (backend, least_ms, cost, steps = 100) => ({ backend, least_ms, cost, steps, iterations: 4 });
+  assert.match(speedWords(row("banded", 0.5, 576.88), row("lbfgs", 0.65, 581.1)), /^banded is 1\.3 times as fast at equal cost, 576\.9 and 581\.1; .*; of 100 equal steps each, the fastest count\.$/);
+  assert.match(speedWords(row("banded", 0.7, 500), row("lbfgs", 0.5, 501)), /^lbfgs is 1\.4 times as fast at equal cost/);
+  assert.equal(speedWords(row("banded", 0.7, 500), row("lbfgs", 0.5, 501, 50)), "Being measured: 100 and 50 steps of 100.");
+  assert.match(speedWords(row("banded", 0.5, 500), row("lbfgs", 0.51, 499)), /^Both are as fast at equal cost/);
+  const other = speedWords(row("banded", 0.5, 763.92), row("lbfgs", 0.65, 790.79));
+  assert.match(other, /^Not to be compared: the plan of lbfgs costs 3\.5 % more/);
+  assert.doesNotMatch(other, /fast at|times/);
+  assert.match(speedWords(row("banded", 0.5, 0), row("lbfgs", 0.65, 0)), /^Nothing had to be solved/);
 });
 
 test("the stopwatch gives up where a block takes more than a second, and says so", async (t) => {
-  const { asked, slow } = await measure(t, 400);
+  const { asked, slow } = await measure(t, () => 400);
   assert.deepEqual([asked, slow], [[{ backend: "banded", steps: 3 }], true]);
 });
 
@@ -346,7 +361,7 @@ test("an attempt is told by the round that it took", () => {
   const round = (pairs, iterations) => ({ pairs: Array(pairs).fill({}), iterations });
   const attempt = { duration_s: 4.25, arrival: "free", segments: 9, best: 1, reason: "none", rounds: [round(0, 7), round(3, 4), round(5, 2)] };
   assert.equal(roundOf(attempt), attempt.rounds[1]);
-  assert.deepEqual(rowOf(attempt), { arrival: "4.25 s", end: "free", segments: 9, rounds: 3, pairs: 3, iterations: 13, reason: "✓ taken" });
+  assert.deepEqual(rowOf(attempt), { arrival: "4.25 s", end: "free", segments: 9, rounds: 3, pairs: 3, iterations: 13, reason: "taken" });
   assert.equal(roundOf({ ...attempt, best: null }), attempt.rounds[2]);
   assert.equal(rowOf({ ...attempt, best: null, rounds: [], reason: "search_failed" }).reason, "search failed");
 });

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Handles of the object at hand: buttons over the picture, for mouse, touch and keys.
+import { element } from "../dom.js";
 import { aimPad, heightOf, moves, partOf, placeOf, setHeight, setRadius, setWallEnd, tipOf, wallEnds } from "./scene.js";
 
 const STEP = 0.1; // of an arrow key [m]
+const SIGNS = ["height", "aim"]; // the others are plain
 const ABOVE = 0.45; // a handle of the height is so far above [m]
 
-/** What can be drawn at an object: { name, label, text, place, level(x, y) or vertical(z) }. */
+/** What can be drawn at an object: { name, label, place, level(x, y) or vertical(z) }. */
 export function handlesOf(scene, object, side) {
   const part = partOf(scene, object), [x, y] = placeOf(scene, object), top = heightOf(scene, object);
   const height = {
-    name: "height", label: "height", text: "↕", place: [x, y, top + ABOVE],
+    name: "height", label: "height", place: [x, y, top + ABOVE],
     vertical: (z) => setHeight(scene, object, z - ABOVE),
   };
   switch (object.kind) {
@@ -17,19 +19,19 @@ export function handlesOf(scene, object, side) {
       return [height];
     case "pad":
       return [{
-        name: "aim", label: moves(part) ? "heading and speed of the pad" : "heading of the pad", text: "➤", place: [...tipOf(part), part.height],
+        name: "aim", label: moves(part) ? "heading and speed of the pad" : "heading of the pad", place: [...tipOf(part), part.height],
         level: (px, py) => aimPad(scene, px, py),
       }];
     case "wall":
       return [
         ...wallEnds(part).map(([ex, ey], end) => ({
-          name: `end ${end + 1}`, label: "end of the wall", text: "", place: [ex, ey, 0.02], level: (px, py) => setWallEnd(scene, object, end, px, py),
+          name: `end ${end + 1}`, label: "end of the wall", place: [ex, ey, 0.02], level: (px, py) => setWallEnd(scene, object, end, px, py),
         })),
         height,
       ];
     default:
       return [
-        { name: "radius", label: "radius", text: "", place: [x + side[0] * part.radius, y + side[1] * part.radius, 0.02], level: (px, py) => setRadius(scene, object, Math.hypot(px - x, py - y)) },
+        { name: "radius", label: "radius", place: [x + side[0] * part.radius, y + side[1] * part.radius, 0.02], level: (px, py) => setRadius(scene, object, Math.hypot(px - x, py - y)) },
         height,
       ];
   }
@@ -64,7 +66,6 @@ export class Handles {
       const steep = handle.vertical && this.picture.look.name === "top";
       button.hidden = !at || steep;
       if (button.hidden) continue;
-      button.textContent = handle.text;
       button.title = handle.label;
       button.setAttribute("aria-label", `${handle.label}: drag, or arrow keys`);
       button.style.transform = `translate(${at[0]}px, ${at[1]}px) translate(-50%, -50%)${handle.name === "aim" ? ` rotate(${this.turned(handle.place)}deg)` : ""}`;
@@ -80,7 +81,9 @@ export class Handles {
   make(name) {
     const button = document.createElement("button");
     button.type = "button";
-    button.className = `handle ${name.split(" ")[0]}`;
+    const [kind] = name.split(" ");
+    button.className = `handle ${kind}`;
+    if (SIGNS.includes(kind)) button.append(element("i", { className: `sign ${kind}` }));
     const find = () => this.list().find((handle) => handle.name === name);
     button.addEventListener("pointerdown", (event) => {
       if (event.button !== 0) return;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The planner in a page: a scene that can be changed by hand, a plan for it at once, a flight.
+import "../signs.css";
 import { Flight } from "./flight.js";
 import { Hand } from "./hand.js";
 import { Handles } from "./handles.js";
@@ -120,7 +121,7 @@ class Playground {
 
   hint() {
     const object = this.hover ?? this.selected, words = {
-      start: "the quadrotor: drag; shift-drag or ↕ up and down", pad: "the pad: drag; its arrow is heading and speed", wall: "a wall: drag; its ends, its height", pillar: "a pillar: drag; its radius, its height",
+      start: "the quadrotor: drag; shift-drag or its handle: up and down", pad: "the pad: drag; its arrow is heading and speed", wall: "a wall: drag; its ends, its height", pillar: "a pillar: drag; its radius, its height",
     };
     at("hint").textContent = object ? words[object.kind] : this.flight || this.touched ? "" : "Drag the quadrotor, the pad, the walls, the pillars";
   }
@@ -348,7 +349,8 @@ class Playground {
 
   showPlaying() {
     const { flight } = this;
-    at("fly").textContent = !flight ? "▶ Fly it" : flight.over ? "▶ Fly again" : flight.playing ? "⏸ Pause" : "▶ Go on";
+    at("fly").children[0].className = flight?.playing ? "sign pause" : "sign play";
+    at("fly").children[1].textContent = !flight ? "Fly it" : flight.over ? "Fly again" : flight.playing ? "Pause" : "Go on";
     at("reset").disabled = !flight;
     at("timing").hidden = Boolean(flight);
   }

@@ -3,10 +3,11 @@
 import { element } from "../dom.js";
 import { endOf } from "../spline.js";
 import { curveOf } from "./answer.js";
-import { checksOf, eventWords, headlineOf, lengthOf, plain, rowOf } from "./words.js";
+import { checksOf, eventWords, headlineOf, lengthOf, plain, rowOf, speedWords } from "./words.js";
 
 const at = (id) => document.getElementById(id);
 const COLOURS = { banded: "#0072B2", lbfgs: "#E69F00" };
+const classOf = ({ ok }) => (ok === null ? "unasked" : ok ? "yes" : "no");
 const COLUMNS = [
   ["arrival", "arrival", "When this attempt meets the pad"],
   ["end", "time is", "Free: the solver may move the time of arrival. Fixed: it may not"],
@@ -69,8 +70,8 @@ export class Panel {
       ...figures.map(([name, value, unit, title]) => element("div", { title }, element("dt", { textContent: name }), element("dd", {}, String(value), element("small", { textContent: unit && ` ${unit}` })))),
     );
     at("checks").replaceChildren(...(answer.certificate ? checksOf(answer.certificate, { ...scene.limits, body_rate: this.about.body_rate }) : []).map((check) =>
-      element("li", { title: check.help, className: check.ok === null ? "unasked" : check.ok ? "yes" : "no" },
-        element("span", { className: "tick", textContent: check.ok === null ? "·" : check.ok ? "✓" : "✗", ariaLabel: check.ok === null ? "not asked" : check.ok ? "holds" : "does not hold" }),
+      element("li", { title: check.help, className: classOf(check) },
+        element("span", { className: "tick", role: "img", ariaLabel: check.ok === null ? "not asked" : check.ok ? "holds" : "does not hold" }, element("i", { className: `sign ${classOf(check)}` })),
         element("span", { textContent: check.name }), element("span", { className: "figure", textContent: check.figure }))));
     this.attempts(answer.attempts, chosen);
   }
@@ -98,28 +99,21 @@ export class Panel {
 
   rounds({ rounds, best }) {
     const names = ["round", "path", "half-sp.", "iter.", "cost", "solver", ""];
-    const rows = rounds.map((round, i) => [i + 1, round.guide + 1, round.pairs.length, round.iterations, round.cost.toPrecision(5), plain(round.status), i === best ? "✓ taken" : ""]);
+    const rows = rounds.map((round, i) => [i + 1, round.guide + 1, round.pairs.length, round.iterations, round.cost.toPrecision(5), plain(round.status), i === best ? "taken" : ""]);
     return element("table", { className: "rounds" },
       element("thead", {}, element("tr", {}, ...names.map((textContent) => element("th", { textContent, title: textContent === "path" ? "Which of the guide paths around the first obstacle" : "" })))),
       element("tbody", {}, ...rows.map((row) => element("tr", {}, ...row.map((textContent) => element("td", { textContent }))))));
   }
 
-  /** `rows`: { backend, mean_ms, steps, iterations, cost } as far as they are known; `slow`: no more will come. */
+  /** `rows`: { backend, least_ms, steps, iterations, cost } as far as they are known; `slow`: no more will come. */
   times(rows, slow) {
-    const known = rows.filter(({ steps }) => steps > 0), most = Math.max(...known.map(({ mean_ms }) => mean_ms), 1e-9);
-    const lines = rows.map(({ backend, mean_ms, steps }) => {
+    const known = rows.filter(({ steps }) => steps > 0), most = Math.max(...known.map(({ least_ms }) => least_ms), 1e-9);
+    const lines = rows.map(({ backend, least_ms, steps }) => {
       const bar = element("i");
-      bar.style.cssText = `--colour: ${COLOURS[backend]}; width: ${steps > 0 ? (100 * mean_ms) / most : 0}%`;
-      return element("div", { className: "row" }, element("code", { textContent: backend }), element("div", { className: "bar" }, bar), element("b", { textContent: steps > 0 ? `${mean_ms.toFixed(mean_ms < 10 ? 2 : 1)} ms` : slow ? "–" : "…" }));
+      bar.style.cssText = `--colour: ${COLOURS[backend]}; width: ${steps > 0 ? (100 * least_ms) / most : 0}%`;
+      return element("div", { className: "row" }, element("code", { textContent: backend }), element("div", { className: "bar" }, bar), element("b", { textContent: steps > 0 ? `${least_ms.toFixed(least_ms < 10 ? 2 : 1)} ms` : slow ? "–" : "…" }));
     });
-    const [a, b] = rows, done = Math.min(a.steps, b.steps);
-    let words = slow ? "Not measured: this scene's steps take too long." : "Measured as soon as the scene is at rest.";
-    if (!slow && done > 0) {
-      const ratio = b.mean_ms / a.mean_ms;
-      const said = Math.abs(ratio - 1) < 0.05 ? "Both take as long" : ratio > 1 ? `${a.backend} is ${ratio.toFixed(1)} times as fast` : `${b.backend} is ${(1 / ratio).toFixed(1)} times as fast`;
-      const solves = a.cost > 0 && b.cost > 0 ? `${a.iterations} and ${b.iterations} iterations in the last solve; costs ${a.cost.toPrecision(5)} and ${b.cost.toPrecision(5)}` : "nothing had to be solved";
-      words = `${said}: means over ${done} equal steps, ${solves}.`;
-    }
+    const words = slow ? "Not measured: this scene's steps take too long." : known.length > 0 ? speedWords(...rows) : "Measured as soon as the scene is at rest.";
     at("times").replaceChildren(...lines, element("p", { className: "about", textContent: words }));
   }
 

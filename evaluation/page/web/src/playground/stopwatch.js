@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The time of a step: a hundred equal ones of each backend, some at a time while nothing else is to do.
+// The time of a step: a hundred equal ones of each backend, some at a time while nothing else is to do. The backends take
+// turns and the fastest steps count: a browser makes code fast after it has run for a while, and does other things, too.
 import { copy } from "./scene.js";
 
-const STEPS = 100, BLOCK = 10, WARM = 3;
+export const STEPS = 100;
+const BLOCK = 10, FIRST = 3;
 const PATIENCE = 60; // a block takes no longer than about this [ms]
 const REST = 500; // the scene has to rest so long before [ms]
 const TOO_LONG = 1000; // a block that takes longer is the last one: nothing else can be done meanwhile [ms]
@@ -21,7 +23,7 @@ export class Stopwatch {
 
   begin(scene) {
     this.stop();
-    this.rows = this.backends.map((backend) => ({ backend, expected_ms: 0, mean_ms: 0, steps: 0 }));
+    this.rows = this.backends.map((backend) => ({ backend, expected_ms: 0, least_ms: Infinity, steps: 0 }));
     this.show(this.rows, false);
     const run = (this.run = { scene: copy(scene) });
     this.waiting = setTimeout(() => this.next(run), REST);
@@ -29,10 +31,9 @@ export class Stopwatch {
 
   next(run) {
     if (run !== this.run) return;
-    // One after the other: the module keeps what it has prepared of the newest scene and backend only.
-    const row = this.rows.find(({ steps }) => steps < STEPS);
-    if (!row) return;
-    const block = row.expected_ms === 0 ? WARM : Math.min(BLOCK, STEPS - row.steps, Math.max(1, Math.floor(PATIENCE / row.expected_ms)));
+    const row = this.rows.reduce((a, b) => (b.steps < a.steps ? b : a));
+    if (row.steps === STEPS) return;
+    const block = row.expected_ms === 0 ? FIRST : Math.min(BLOCK, STEPS - row.steps, Math.max(1, Math.floor(PATIENCE / row.expected_ms)));
     const begun = performance.now();
     let answer;
     try {
@@ -40,9 +41,9 @@ export class Stopwatch {
     } catch {
       return; // what is wrong with the scene stands in the headline
     }
-    // The first one only tells how long it takes: browsers make code fast after they have run it for a while.
+    // The first block only tells how long the others take.
     if (row.expected_ms > 0) {
-      row.mean_ms = (row.mean_ms * row.steps + answer.mean_ms * answer.steps) / (row.steps + answer.steps);
+      row.least_ms = Math.min(row.least_ms, answer.mean_ms);
       row.steps += answer.steps;
     }
     Object.assign(row, { expected_ms: Math.max(answer.mean_ms, 0.01), iterations: answer.iterations, cost: answer.cost });

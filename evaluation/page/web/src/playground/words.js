@@ -3,7 +3,9 @@
 import { REASONS } from "../reasons.js";
 import { endOf, sample } from "../spline.js";
 import { curveOf, roundOf } from "./answer.js";
+import { STEPS } from "./stopwatch.js";
 
+const EQUAL_COST = 0.01; // as a share: a solve ends within half of it of its optimum (solver.gap)
 const seconds = (t) => `${t.toFixed(2)} s`;
 export const plain = (name) => String(name ?? "").replaceAll("_", " ");
 /** A figure that the module may not have: it sends null for what was not measured. */
@@ -41,7 +43,7 @@ export function checksOf(c, limits) {
       ok: c.endpoint_required ? c.endpoint_met : null,
       name: c.endpoint_required ? "ends at the pad, as fast as the pad" : "ends at rest",
       figure: c.endpoint_required ? `error ${small(c.endpoint_position_residual_m)} m and ${small(c.endpoint_velocity_residual_mps)} m/s` : "no contact was asked for",
-      help: "Where the curve ends, against where the pad is predicted to be at that time",
+      help: "Where the curve ends, against where the pad is predicted to be at that time. The small hook there turns into the pad's motion: seen from the pad it is a straight descent",
     },
     {
       ok: c.limits_kept,
@@ -81,8 +83,22 @@ export function rowOf(attempt) {
     rounds: attempt.rounds.length,
     pairs: taken?.pairs.length ?? 0,
     iterations: attempt.rounds.reduce((sum, { iterations }) => sum + iterations, 0),
-    reason: attempt.reason === "none" ? "✓ taken" : plain(attempt.reason),
+    reason: attempt.reason === "none" ? "taken" : plain(attempt.reason),
   };
+}
+
+/** What two rows of the stopwatch say together, once they are complete. Times compare only where the plans cost the same. */
+export function speedWords(a, b) {
+  if (Math.min(a.steps, b.steps) < STEPS) return `Being measured: ${a.steps} and ${b.steps} steps of ${STEPS}.`;
+  const steps = `of ${STEPS} equal steps each, the fastest count`;
+  if (!(a.cost > 0 && b.cost > 0)) return `Nothing had to be solved; ${steps}.`;
+  const figures = `${a.cost.toPrecision(4)} and ${b.cost.toPrecision(4)}; ${a.iterations} and ${b.iterations} iterations in the last solve; ${steps}`;
+  const more = b.cost / a.cost - 1;
+  if (Math.abs(more) > EQUAL_COST) {
+    return `Not to be compared: the plan of ${b.backend} costs ${(100 * Math.abs(more)).toFixed(1)} % ${more > 0 ? "more" : "less"}, ${figures}.`;
+  }
+  const ratio = b.least_ms / a.least_ms, [faster, times] = ratio > 1 ? [a, ratio] : [b, 1 / ratio];
+  return `${times < 1.05 ? "Both are as fast" : `${faster.backend} is ${times.toFixed(1)} times as fast`} at equal cost, ${figures}.`;
 }
 
 /** "landing (arriving)" as a reader would say it. */
