@@ -18,6 +18,8 @@
 namespace touchdown::evaluation {
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 // Later pairs replace earlier ones of the same key: a method's key counts, not the cell's.
 std::vector<std::string> Overrides(const std::vector<const StudyPairs*>& layers) {
   StudyPairs merged;
@@ -151,7 +153,6 @@ namespace {
 
 // For a part of a study: the selection.
 nlohmann::ordered_json SelectionJson(const StudySelection& selection) {
-  using Json = nlohmann::ordered_json;
   if (!selection.Part()) return nullptr;
   return {{"cells", selection.cells},
           {"methods", selection.methods},
@@ -161,7 +162,6 @@ nlohmann::ordered_json SelectionJson(const StudySelection& selection) {
 }  // namespace
 
 nlohmann::ordered_json StudyJson(const StudyPlan& plan) {
-  using Json = nlohmann::ordered_json;
   const auto text_map = [](const StudyPairs& pairs) {
     Json map = Json::object();
     for (const auto& [key, value] : pairs) map[key] = value;

@@ -181,7 +181,7 @@ NamedSolids GoalSolids() {
 
 NamedSolids GroundSolids(const std::vector<NamedSolids>& world,
                          const std::vector<Eigen::Vector3d>& places_W) {
-  constexpr double kBeyond = 3.0, kThickness = 0.02;  // [m]
+  constexpr double kBeyond = 3.0, kSheet = 0.02;  // [m]
   Eigen::AlignedBox3d bounds;
   for (const Eigen::Vector3d& p : places_W) bounds.extend(p);
   for (const NamedSolids& thing : world) {
@@ -192,9 +192,9 @@ NamedSolids GroundSolids(const std::vector<NamedSolids>& world,
     }
   }
   Eigen::Vector3d middle = bounds.center(), size = bounds.sizes();
-  middle.z() = -0.5 * kThickness;
+  middle.z() = -0.5 * kSheet;
   size += Eigen::Vector3d::Constant(2.0 * kBeyond);
-  size.z() = kThickness;
+  size.z() = kSheet;
   return {kWorldFrame, "ground", {{Solid::Kind::kBox, At(middle), size, kGroundColor, {}}}};
 }
 

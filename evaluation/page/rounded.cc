@@ -5,7 +5,11 @@
 
 namespace touchdown::evaluation {
 
+namespace {
+
 using Json = nlohmann::ordered_json;
+
+}  // namespace
 
 Json Rounded(double x, int decimals) {
   if (!std::isfinite(x)) return nullptr;
