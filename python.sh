@@ -15,8 +15,8 @@ install_tiers build report study python notebooks
 
 say "Installing the package touchdown into $environment"
 "$environment/bin/pip" install --no-build-isolation --no-index .
-# Notebooks ask for the kernel python3, which is else that of /usr/bin/python3.
-"$environment/bin/python" -m ipykernel install --sys-prefix >/dev/null
+# Notebooks ask for the kernel python3, which is else that of /usr/bin/python3. The variable: no words about its debugger.
+PYDEVD_DISABLE_FILE_VALIDATION=1 "$environment/bin/python" -m ipykernel install --sys-prefix >/dev/null
 echo
 echo "Try it: $environment/bin/python -c \"import touchdown; print(touchdown.run_trial('open').outcome)\""
 echo "Or run a notebook: $environment/bin/python notebooks/render.py notebooks/06_my_own_planner.ipynb out/planner.html"

@@ -100,7 +100,7 @@ def test_outputs_become_markdown():
 
 def test_a_notebook_runs_in_the_environment_that_python_sh_makes(tmp_path):
     script = (FOLDER.parent / "python.sh").read_text(encoding="utf-8")
-    kernel = re.search(r'^"\$environment/bin/python" (-m ipykernel install .*) >', script, re.M)
+    kernel = re.search(r'"\$environment/bin/python" (-m ipykernel install .*) >', script)
     assert kernel, "it has no kernel"
     python = tmp_path / "own" / "bin" / "python"
     subprocess.run([sys.executable, "-m", "venv", "--system-site-packages", "--without-pip", tmp_path / "own"], check=True)

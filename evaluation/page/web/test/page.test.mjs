@@ -254,7 +254,7 @@ describe("a page of one flight", () => {
   test("opens behind the vehicle, which is in the middle, and plays", async () => {
     const other = await open("one.html");
     await other.waitForSelector("body.ready", { timeout: 60000 });
-    await other.waitForFunction(() => replay.playing && replay.t > replay.begin, { timeout: 20000 });
+    await other.waitForFunction(() => replay.t > replay.begin, { timeout: 60000 });
     const [x, y, wide] = await other.evaluate(() => {
       replay.draw();
       const { camera } = replay.views, { vehicle } = replay.all[0], middle = vehicle.body.position;
