@@ -7,6 +7,7 @@
 #include <set>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 #include <unistd.h>
 
 #include "evaluation/base/bad_input.h"
@@ -27,6 +28,7 @@
 #include "evaluation/video/flight_track.h"
 #include "planning/map/octomap_cells.h"
 #include "sim/obstacles/world_files.h"
+#include "sim/vehicle/vehicle_file.h"
 #include "touchdown/evaluation/base/shipped_files.h"
 #include "touchdown/evaluation/program/program.h"
 
