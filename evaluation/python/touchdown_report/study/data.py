@@ -9,7 +9,7 @@ import pandas as pd
 from touchdown_report import database
 from touchdown_report.study.document import plain
 
-SUPPORTED_VERSION = "8"
+SUPPORTED_VERSION = "9"
 
 
 class StudyError(Exception):
