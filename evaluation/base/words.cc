@@ -46,7 +46,7 @@ std::string InOneLine(std::string_view text) {
 
 std::string OriginAdvice(double coordinate) {
   constexpr double kOfMaps = 1e5;  // [m]
-  if (std::abs(coordinate) < kOfMaps) return {};
+  if (!(std::abs(coordinate) >= kOfMaps)) return {};  // also of NaN
   return ": subtract an origin near the flight from all positions";
 }
 
