@@ -185,7 +185,14 @@ void Onboard::Begin(double t, const estimation::Commands& thrusts) {
                                 std::string(estimation::ToString(status)) +
                                 "; allowed: good, outage, uncertain");
   }
-  const double height = it_->senses.own().now().p_WB.z();
+  const Eigen::Vector3d& place = it_->senses.own().now().p_WB;
+  if (!(place.cwiseAbs().maxCoeff() < planning::kFarthestPlace)) {
+    estimation::ThrowOutOfRange("Onboard::Begin: a coordinate of the own state [m]",
+                                place.cwiseAbs().maxCoeff(),
+                                "below a million: subtract an origin near the flight from all "
+                                "positions");
+  }
+  const double height = place.z();
   if (!(height < it_->options.envelope.ceiling)) {
     estimation::ThrowOutOfRange("Onboard::Begin: the height of the own state [m]", height,
                                 "below the envelope's ceiling");

@@ -513,6 +513,18 @@ TEST(Onboard, NoFlightBeginsAboveTheCeiling) {
               ::testing::HasSubstr("height of the own state [m] is 2"));
 }
 
+// As with the coordinates of a map (UTM): its planner would refuse every step.
+TEST(Onboard, NoFlightBeginsAMillionMetresAway) {
+  for (const double far : {5.3e6, -5.3e6}) {
+    Onboard onboard = Made(Options());
+    estimation::VehicleState state = At(0.0);
+    state.p_WB.y() = far;
+    onboard.Take(state);
+    EXPECT_THAT(Sentence([&] { onboard.Begin(0.0, Eigen::Vector4d::Constant(2.9)); }),
+                ::testing::HasSubstr("subtract an origin near the flight"));
+  }
+}
+
 TEST(Onboard, AForceIsOfItsTime) {
   Onboard onboard = Hovering(0.1);
   EXPECT_EQ(onboard.Take(estimation::FootForce{0.05, 1.0}), Taken::kUsed);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "evaluation/base/words.h"
 
+#include <cmath>
 #include <cstring>
 
 #include <fmt/format.h>
@@ -41,6 +42,12 @@ std::string InOneLine(std::string_view text) {
     }
   }
   return line;
+}
+
+std::string OriginAdvice(double coordinate) {
+  constexpr double kOfMaps = 1e5;  // [m]
+  if (!(std::abs(coordinate) >= kOfMaps)) return {};  // also of NaN
+  return ": subtract an origin near the flight from all positions";
 }
 
 std::string SignalWords(int signal) {

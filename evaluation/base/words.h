@@ -19,6 +19,9 @@ std::string WithoutStop(std::string sentence);
 /// With control characters as in a program's source: "a\n", "\x1b".
 std::string InOneLine(std::string_view text);
 
+/// What to do about a coordinate [m] as large as those of a map, such as UTM. Begins with a colon; empty for others.
+std::string OriginAdvice(double coordinate);
+
 /// "signal 9 (Killed)".
 std::string SignalWords(int signal);
 

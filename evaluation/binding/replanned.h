@@ -17,7 +17,7 @@ struct Replanned {
 
   void Keep() {
     detail = std::string(result.detail);
-    result.detail = {};
+    result.detail = result.forbidden_by = {};  // views
   }
 };
 

@@ -10,7 +10,7 @@
 namespace touchdown::evaluation {
 
 /// Files of trials.
-inline constexpr ResultFormat kTrialFormat{"touchdown trials", 8};
+inline constexpr ResultFormat kTrialFormat{"touchdown trials", 9};
 inline constexpr char kFileOfTrials[] = "file of trials";  ///< in a sentence
 
 /// The facts of a campaign's file for its manifest, without the build. `plan_hash` is a hash of everything that decides

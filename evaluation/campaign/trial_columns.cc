@@ -16,8 +16,6 @@
 namespace touchdown::evaluation {
 namespace {
 
-using Counts = std::map<std::string, int>;
-
 // The declarations.
 class Declare {
  public:
@@ -29,7 +27,7 @@ class Declare {
   void operator()(const char* name, std::optional<double>&) { Add(name, "REAL"); }
   void operator()(const char* name, std::string&) { Add(name, "TEXT"); }
   void operator()(const char* name, Outcome&) { Add(name, "TEXT"); }
-  void operator()(const char* name, Counts&) { Add(name, "TEXT"); }
+  void operator()(const char* name, StepCounts&) { Add(name, "TEXT"); }
   void Derived(const char* name, bool) { Add(name, "INTEGER"); }
   void Derived(const char* name, int) { Add(name, "INTEGER"); }
   void Derived(const char* name, const std::optional<double>&) { Add(name, "REAL"); }
@@ -58,7 +56,7 @@ class Take {
   void operator()(const char*, std::optional<double>& value) { AddNumber(value); }
   void operator()(const char*, std::string& value) { Add(value); }
   void operator()(const char*, Outcome& value) { Add(std::string(ToString(value))); }
-  void operator()(const char*, Counts& value) { Add(nlohmann::json(value).dump()); }
+  void operator()(const char*, StepCounts& value) { Add(nlohmann::json(value).dump()); }
   void Derived(const char*, bool value) { Add(std::int64_t{value}); }
   void Derived(const char*, int value) { Add(std::int64_t{value}); }
   void Derived(const char*, const std::optional<double>& value) { AddNumber(value); }
@@ -101,7 +99,7 @@ class Put {
     if (!outcome) Refuse(name, "an outcome");
     value = *outcome;
   }
-  void operator()(const char* name, Counts& value) {
+  void operator()(const char* name, StepCounts& value) {
     const nlohmann::json json = nlohmann::json::parse(Text(name), nullptr, false);
     if (!json.is_object()) Refuse(name, "an object of counts");
     value.clear();
@@ -187,6 +185,9 @@ void WalkTrial(Walk& walk, TrialResult& r) {
   walk.Derived("replans_planned", Planned(r));
   walk("replans_by_status", r.replans_by_status);
   walk("replans_by_reason", r.replans_by_reason);
+  walk("replans_forbidden_by", r.replans_forbidden_by);
+  walk("gate_steps", r.gate_steps);
+  walk("first_tag_s", r.first_tag_s);
   walk.Group(r.estimator, [&](EstimatorQuality& e) {
     walk("estimator_rmse_position_m", e.rmse_position_m);
     walk("estimator_rmse_velocity_mps", e.rmse_velocity_mps);
@@ -243,6 +244,7 @@ void WalkTiming(Walk& walk, TrialTiming& t) {
   walk.Derived("replan_p95_ms", Quantile(t.replan_wall_ms, 0.95));
   walk.Derived("replan_max_ms", Quantile(t.replan_wall_ms, 1.0));
   walk("deadline_misses", t.deadline_misses);
+  walk("deadline_misses_cpu", t.deadline_misses_cpu);
   walk("depth_image_cpu_s", t.sensing_stages.depth_image);
   walk("pad_image_cpu_s", t.sensing_stages.pad_image);
   walk("pad_finding_cpu_s", t.sensing_stages.pad_finding);

@@ -20,6 +20,7 @@
 #include "evaluation/flight/onboard_setup.h"
 #include "evaluation/flight/pad_log.h"
 #include "evaluation/flight/perception.h"
+#include "evaluation/judge/failure_words.h"
 #include "evaluation/judge/landing_time.h"
 #include "evaluation/judge/metrics.h"
 #include "evaluation/judge/safety_watch.h"
@@ -180,6 +181,10 @@ class Trial {
                           control::ToString(mission.reason));
       Note(t, "mode", mode_);
     }
+    if (status.mission_step && task_ == TaskKind::kLand && !judge_.touchdown()) {
+      ++result_.gate_steps[std::string(control::ToString(mission.gate))];
+    }
+    if (!result_.first_tag_s && std::isfinite(onboard_.pad().TagAge(t))) result_.first_tag_s = t;
     if (status.mission_step && mission.gate != gate_) {
       gate_ = mission.gate;
       Note(t, "gate", std::string(control::ToString(gate_)));
@@ -206,6 +211,8 @@ class Trial {
       no_plan_reason_ = named ? std::string(plan->detail) : planning::ToString(plan->reason);
       ++result_.replans_by_reason[no_plan_reason_];
     }
+    if (!plan->forbidden_by.empty())
+      ++result_.replans_forbidden_by[std::string(plan->forbidden_by)];
     if (plan->status == planning::ReplanStatus::kPlanned) stand_watch_.Planned();
     if (safety_watch_ && !judge_.touchdown())
       safety_watch_->Step(*plan, asked.request.input.margins, asked.late);
@@ -213,6 +220,7 @@ class Trial {
     result_.timing.replan_wall_ms.push_back(1e3 * total.wall);
     result_.timing.replan_cpu_ms.push_back(1e3 * total.cpu);
     if (total.wall > asked.latency_s) ++result_.timing.deadline_misses;
+    if (total.cpu > asked.latency_s) ++result_.timing.deadline_misses_cpu;
     if (samples_ != nullptr) samples_->replans.push_back(SampleOf(t, *plan));
     if (record_ == nullptr) return;
     RecordPlan row;
@@ -348,11 +356,15 @@ class Trial {
       if (!physics_failure_.empty()) result_.detail += " Simulator: " + physics_failure_ + ".";
       if (!touched_.empty()) result_.detail += " Touched: " + touched_ + ".";
       result_.cause = touched_;
-      const bool too_late = result_.outcome == Outcome::kStood ||
-                            result_.outcome == Outcome::kTimeout ||
-                            result_.outcome == Outcome::kInfeasible;
-      if (too_late && !no_plan_reason_.empty()) {
-        result_.detail += " Reason: " + no_plan_reason_ + ".";
+      const bool too_late =
+          result_.outcome == Outcome::kStood || result_.outcome == Outcome::kTimeout ||
+          result_.outcome == Outcome::kLostPad || result_.outcome == Outcome::kInfeasible;
+      if (too_late && !judge_.touchdown()) {
+        result_.detail += NoPlanSentence(result_, no_plan_reason_);
+        if (task_ != TaskKind::kGoTo && !result_.first_tag_s) {
+          result_.detail += " No tag of the pad was ever seen.";
+        }
+        result_.detail += GateSentence(result_, control::ToString(gate_));
       }
       if (result_.outcome == Outcome::kStood) {
         const control::MissionMode mode = onboard_.status().mission.mode;

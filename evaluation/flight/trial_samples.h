@@ -2,6 +2,7 @@
 // The cost of a flight, sample by sample, for a profile; and the input of its pad filter.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "evaluation/flight/pad_log.h"
@@ -22,6 +23,7 @@ struct ReplanSample {
   int iterations = 0;  ///< of the last solve
   int work = 0;        ///< of planning.max_work
   planning::StageTimes times;
+  std::string forbidden_by;  ///< the term or limit that forbade a plan, if one did
 };
 
 /// One depth image.
@@ -39,9 +41,10 @@ struct TrialSamples {
 
 /// `t_now`: when the step was asked for [s].
 inline ReplanSample SampleOf(double t_now, const planning::ReplanResult& result) {
+  const std::string forbidden_by(result.forbidden_by);
   return {t_now,        result.status, result.reason,  result.from_odometry,
           result.pairs, result.solves, result.rebinds, result.solver.iterations,
-          result.work,  result.times};
+          result.work,  result.times,  forbidden_by};
 }
 
 }  // namespace touchdown::evaluation

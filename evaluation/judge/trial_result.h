@@ -64,8 +64,12 @@ struct TrialTiming {
   double judging_cpu_s = 0.0;
   std::vector<double> replan_wall_ms;  ///< every replan
   std::vector<double> replan_cpu_ms;
-  int deadline_misses = 0;  ///< replans slower than the latency they were flown with
+  int deadline_misses = 0;      ///< replans slower than the latency they were flown with ...
+  int deadline_misses_cpu = 0;  ///< ... by CPU time alone: others waited for a loaded machine
 };
+
+/// Numbers of steps by a name.
+using StepCounts = std::map<std::string, int>;
 
 /// The result of one trial: a pure function of (scenario, seed), except for `timing`.
 struct TrialResult {
@@ -85,8 +89,12 @@ struct TrialResult {
   double max_speed_mps = 0.0;
   double max_acceleration_mps2 = 0.0;  ///< over 20 ms
   int replans = 0;
-  std::map<std::string, int> replans_by_status;
-  std::map<std::string, int> replans_by_reason;  ///< of those that made no new plan
+  StepCounts replans_by_status;
+  StepCounts replans_by_reason;     ///< of those that made no new plan
+  StepCounts replans_forbidden_by;  ///< of these, those whose plan a term or a limit forbade
+  /// Steps of the mission of a landing (100 Hz) until first contact, by the landing condition (control::Gate).
+  StepCounts gate_steps;
+  std::optional<double> first_tag_s;  ///< when a tag of the pad was first found; empty: never
   std::optional<EstimatorQuality> estimator;
   std::optional<OwnStateQuality> own_state;  ///< where it is estimated
   std::optional<Following> following;        ///< of the task follow, where it lasted 10 s

@@ -55,6 +55,7 @@ Json ChromeTrace(const Profile& profile) {
       event["name"] = fmt::format("replan {}", step);
       args["status"] = planning::ToString(sample.status);
       args["reason"] = planning::ToString(sample.reason);
+      if (!sample.forbidden_by.empty()) args["forbidden_by"] = sample.forbidden_by;
       args["t_now"] = sample.t_now;
     }
     if (!perception) {

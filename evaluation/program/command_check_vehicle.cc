@@ -5,10 +5,12 @@
 #include <memory>
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 #include <nlohmann/json.hpp>
 
 #include "estimation/base/degrees.h"
 #include "evaluation/base/output_path.h"
+#include "evaluation/base/words.h"
 #include "evaluation/flight/vehicle_check.h"
 #include "evaluation/program/commands.h"
 #include "evaluation/report/report_program.h"
@@ -22,14 +24,6 @@ struct CheckVehicleArguments {
   std::string picture;
   bool json = false;
 };
-
-std::string FindingsText(const char* kind, const std::vector<sim::VehicleFinding>& findings) {
-  std::string text;
-  for (const sim::VehicleFinding& f : findings) {
-    text += fmt::format("{}: {}\n  remedy: {}\n", kind, f.what, f.remedy);
-  }
-  return text;
-}
 
 std::string ModelText(const estimation::VehicleModel& model) {
   const estimation::Allocation allocation = estimation::AllocationOf(model);
@@ -65,8 +59,10 @@ std::string ModelText(const estimation::VehicleModel& model) {
 }
 
 std::string Text(const VehicleCheck& check) {
-  std::string text = FindingsText("fault", check.findings.faults()) +
-                     FindingsText("warning", check.findings.warnings());
+  std::string text;
+  for (const sim::VehicleFinding& f : check.findings.warnings()) {
+    text += fmt::format("warning: {}\n  remedy: {}\n", f.what, f.remedy);
+  }
   if (check.model) {
     text += fmt::format("{}\n  airframe file        {}\n", check.file,
                         check.airframe_file.empty() ? "none beside it" : check.airframe_file);
@@ -89,6 +85,9 @@ int CheckVehicleFile(const CheckVehicleArguments& arguments, const Registries& r
     std::cout << VehicleCheckJson(check).dump(2) << std::endl;
   } else {
     std::cout << Text(check) << std::flush;
+  }
+  for (const sim::VehicleFinding& fault : check.findings.faults()) {
+    spdlog::error("fault: {}; remedy: {}", InOneLine(fault.what), InOneLine(fault.remedy));
   }
   if (!arguments.picture.empty() && check.model) {
     const auto write = [&](const std::string& path) {

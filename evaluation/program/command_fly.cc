@@ -153,6 +153,10 @@ std::string Summary(const Scenario& scenario, const TrialResult& r, const Regist
   for (const auto& [reason, count] : r.replans_by_reason) {
     text += fmt::format("{}{} {}", std::exchange(separator, ", "), count, reason);
   }
+  separator = "; forbidden by: ";
+  for (const auto& [name, count] : r.replans_forbidden_by) {
+    text += fmt::format("{}{} {}", std::exchange(separator, ", "), count, name);
+  }
   if (const auto median = Quantile(r.timing.replan_wall_ms, 0.5)) {
     text += fmt::format(
         "\n  replanning             median {:.2f} ms, p95 {:.2f} ms, largest {:.2f} ms, {} of {} "
@@ -160,6 +164,11 @@ std::string Summary(const Scenario& scenario, const TrialResult& r, const Regist
         "than their latency",
         *median, *Quantile(r.timing.replan_wall_ms, 0.95), *Quantile(r.timing.replan_wall_ms, 1.0),
         r.timing.deadline_misses, r.timing.replan_wall_ms.size());
+    // Those late by their wall time alone waited for a loaded machine.
+    if (r.timing.deadline_misses > 0) {
+      text += fmt::format(" ({} by CPU time alone, largest {:.2f} ms)",
+                          r.timing.deadline_misses_cpu, *Quantile(r.timing.replan_cpu_ms, 1.0));
+    }
   }
   text += fmt::format(
       "\n  speed                  {:.1f} x real time (planning {:.0f} %, physics "

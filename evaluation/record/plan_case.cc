@@ -138,6 +138,7 @@ SolvedStep SolveSought(const RecordedFlight& flight, Replay* replay) {
   solved.outcome = OutcomeOf(result);
   solved.pair = result.pair();
   solved.committed = result.committed;
+  solved.forbidden_by = std::string(result.forbidden_by);
   solved.unseen_W = result.unseen_W;
   for (const solvers::TermCost& term : result.solver.cost_by_term)
     solved.terms.push_back(term.name);

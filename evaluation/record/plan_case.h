@@ -27,6 +27,7 @@ struct SolvedStep {
   ReplanOutcome outcome;                    ///< of the step solved again
   planning::FlightPair pair;                ///< that is flown from t_start on ...
   bool committed = false;                   ///< ... and was proven in this step
+  std::string forbidden_by;  ///< the term or limit that forbade a new plan, if one did
   std::optional<Eigen::Vector3d> unseen_W;  ///< cell that this step's pairs lack, or the next's [m]
   planning::StageTimes times;               ///< without the log
   planning::ReplanLog log;

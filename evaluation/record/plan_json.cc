@@ -67,6 +67,7 @@ Json PlanJson(const SolvedStep& solved, bool drawn) {
   Json& paths = json["guide_paths"] = Json::array();
   for (const auto& path : solved.outcome.guide_paths) paths.push_back(PathJson(path));
   json["result"] = OutcomeJson(solved.outcome);
+  json["result"]["forbidden_by"] = solved.forbidden_by;
   const planning::FlightPair& committed = solved.recorded.before.next;
   const bool stops = solved.outcome.certificate.earlier && std::isfinite(committed.t_stop);
   json["result"]["stop"] =

@@ -56,6 +56,10 @@ std::string QuestionText(const SolvedStep& solved) {
   return text + CommittedBefore(asked, input.t_start);
 }
 
+std::string ForbiddenBy(const std::string& name) {
+  return name.empty() ? "" : fmt::format(" (forbidden by {})", name);
+}
+
 std::string RoundText(const planning::RoundLog& round, int number) {
   const solvers::SolverResult& solver = round.solver;
   std::string text = fmt::format(
@@ -70,6 +74,11 @@ std::string RoundText(const planning::RoundLog& round, int number) {
     costs += fmt::format("{}{} {:.4g}", costs.empty() ? "" : ", ", term.name, term.cost);
   }
   if (!costs.empty()) text += fmt::format("      cost by term: {}\n", costs);
+  if (solver.worst_term >= 0 && solver.max_violation > planning::kLimitSlack) {
+    text += fmt::format("      violates {} by {:.3g}\n",
+                        solver.cost_by_term[static_cast<std::size_t>(solver.worst_term)].name,
+                        solver.max_violation);
+  }
   if (!solver.usable()) return text;
   if (round.blocked.empty()) return text + "      the curve is clear\n";
   for (const planning::BlockedRun& run : round.blocked) {
@@ -124,7 +133,8 @@ std::string AttemptText(const planning::AttemptLog& attempt, int number,
   }
   if (attempt.certificate) text += CertificateText(*attempt.certificate, limits, "    ");
   if (attempt.reason != planning::ReplanReason::kNone) {
-    text += fmt::format("    failed: {}\n", planning::ToString(attempt.reason));
+    text += fmt::format("    failed: {}{}\n", planning::ToString(attempt.reason),
+                        ForbiddenBy(attempt.forbidden_by));
   }
   return text;
 }
@@ -171,8 +181,8 @@ std::string PlanText(const SolvedStep& solved) {
   const ReplanOutcome& out = solved.outcome;
   text += fmt::format("{}: {}\n", planning::ToString(out.status), planning::Explain(out.status));
   if (out.reason != planning::ReplanReason::kNone) {
-    text += fmt::format("  no new plan: {}: {}\n", planning::ToString(out.reason),
-                        planning::Explain(out.reason));
+    text += fmt::format("  no new plan: {}{}: {}\n", planning::ToString(out.reason),
+                        ForbiddenBy(solved.forbidden_by), planning::Explain(out.reason));
   }
   if (solved.unseen_W) {
     text += fmt::format("  to be seen next: the cell at {} m\n", Vector(*solved.unseen_W));

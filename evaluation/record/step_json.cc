@@ -53,7 +53,8 @@ StepJson AttemptJson(const planning::AttemptLog& attempt) {
                    {"arrival", attempt.arrival == planning::ArrivalMode::kFree ? "free" : "fixed"},
                    {"segments", attempt.segments},
                    {"best", attempt.best < 0 ? StepJson() : StepJson(attempt.best)},
-                   {"reason", planning::ToString(attempt.reason)}};
+                   {"reason", planning::ToString(attempt.reason)},
+                   {"forbidden_by", attempt.forbidden_by}};
   json["certificate"] = attempt.certificate ? CertificateJson(*attempt.certificate) : StepJson();
   StepJson& rounds = json["rounds"] = StepJson::array();
   for (const planning::RoundLog& round : attempt.rounds) rounds.push_back(RoundJson(round));

@@ -89,6 +89,7 @@ Json WallClockJson(const TrialTiming& timing) {
   json["replan_latency_ms"] = QuantilesJson(timing.replan_wall_ms);
   json["replan_cpu_ms"] = QuantilesJson(timing.replan_cpu_ms);
   json["deadline_misses"] = timing.deadline_misses;
+  json["deadline_misses_cpu"] = timing.deadline_misses_cpu;
   json["realtime_factor"] = timing.wall_s > 0.0 ? Json(timing.simulated_s / timing.wall_s) : Json();
   json["realtime_factor_cpu"] =
       timing.cpu_s > 0.0 ? Json(timing.simulated_s / timing.cpu_s) : Json();
@@ -147,6 +148,9 @@ Json LandJson(const Scenario& scenario, const TrialResult& result) {
   json["replans"] = result.replans;
   json["replans_by_status"] = result.replans_by_status;
   json["replans_by_reason"] = result.replans_by_reason;
+  json["replans_forbidden_by"] = result.replans_forbidden_by;
+  json["gate_steps"] = result.gate_steps;
+  json["first_tag_s"] = OrNull(result.first_tag_s);
   json["estimator"] = EstimatorJson(result.estimator);
   json["own_state"] = OwnStateJson(result.own_state);
   json["safety"] = SafetyJson(result.safety);

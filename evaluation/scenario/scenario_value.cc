@@ -35,6 +35,12 @@ std::optional<double> Number(const YAML::Node& node) {
   return value;
 }
 
+// Of a position that was given in the coordinates of a map.
+std::string Advice(const std::optional<double>& value, const ValueRange& range) {
+  const bool is_position = range.unit == "m" && range.lo < 0.0;
+  return value && is_position ? OriginAdvice(*value) : "";
+}
+
 bool Inside(double value, const ValueRange& range) {
   return value <= range.hi && (range.above_lo ? value > range.lo : value >= range.lo);
 }
@@ -48,16 +54,16 @@ std::string ValueRange::ToString() const {
 }
 
 void RefuseValue(const Where& where, const std::string& key, const std::string& what,
-                 const YAML::Node& node) {
-  throw BadInput(
-      fmt::format("{}: {} must be {}, not {}.", where.ToString(), key, what, Shown(node)));
+                 const YAML::Node& node, const std::string& advice) {
+  throw BadInput(fmt::format("{}: {} must be {}, not {}{}.", where.ToString(), key, what,
+                             Shown(node), advice));
 }
 
 double ReadNumber(const YAML::Node& node, const Where& where, const std::string& key,
                   const ValueRange& range) {
   const std::optional<double> value = Number(node);
   if (!value || !Inside(*value, range)) {
-    RefuseValue(where, key, "a number in " + range.ToString(), node);
+    RefuseValue(where, key, "a number in " + range.ToString(), node, Advice(value, range));
   }
   return *value;
 }
@@ -116,7 +122,9 @@ Eigen::VectorXd ReadVector(const YAML::Node& node, const Where& where, const std
   Eigen::VectorXd values(size);
   for (int i = 0; i < size; ++i) {
     const std::optional<double> value = Number(node[i]);
-    if (!value || !Inside(*value, range)) RefuseValue(where, key, what, node[i]);
+    if (!value || !Inside(*value, range)) {
+      RefuseValue(where, key, what, node[i], Advice(value, range));
+    }
     values[i] = *value;
   }
   return values;

@@ -21,9 +21,9 @@ struct Where {
   std::string ToString() const;
 };
 
-/// @throws BadInput "<where>: <key> must be <what>, not <value>".
+/// @throws BadInput "<where>: <key> must be <what>, not <value><advice>".
 [[noreturn]] void RefuseValue(const Where& where, const std::string& key, const std::string& what,
-                              const YAML::Node& node);
+                              const YAML::Node& node, const std::string& advice = "");
 
 double ReadNumber(const YAML::Node& node, const Where& where, const std::string& key,
                   const ValueRange& range);

@@ -75,7 +75,10 @@ class WaypointReader {
     const auto end = text.data() + text.size();
     const auto read = std::from_chars(text.data(), end, value);
     if (read.ec != std::errc{} || read.ptr != end || !(value >= lo && value <= hi)) {
-      Refuse(fmt::format("{} must be a number in [{:g}, {:g}], not '{}'", name, lo, hi, text));
+      const bool is_place = name == "x" || name == "y";
+      const bool is_number = read.ec == std::errc{} && read.ptr == end;
+      Refuse(fmt::format("{} must be a number in [{:g}, {:g}], not '{}'{}", name, lo, hi, text,
+                         is_place && is_number ? OriginAdvice(value) : ""));
     }
     return value;
   }

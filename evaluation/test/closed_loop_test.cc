@@ -116,6 +116,24 @@ TEST(ClosedLoop, AnExactGpsLandsToo) {
   EXPECT_EQ(result.outcome, Outcome::kLanded) << result.detail;
 }
 
+TEST(ClosedLoop, ALandingWithoutTagsSaysWhatItsConditionLacked) {
+  const Scenario scenario = Shipped("open", {"camera.drop=1", "timeout=8"});
+  const TrialResult result = RunTrial(scenario, 1, StandardRegistries());
+  EXPECT_FALSE(result.landed());
+  EXPECT_NE(result.detail.find(" No tag of the pad was ever seen."), std::string::npos)
+      << result.detail;
+  EXPECT_NE(result.detail.find(" The landing condition was never open, "), std::string::npos)
+      << result.detail;
+  EXPECT_GT(result.gate_steps.at("tags_unseen"), 600);
+  const nlohmann::ordered_json json = LandJson(scenario, result);
+  EXPECT_TRUE(json["first_tag_s"].is_null());
+  EXPECT_EQ(json["gate_steps"]["tags_unseen"], result.gate_steps.at("tags_unseen"));
+
+  const TrialResult landed = RunTrial(Shipped("open"), 1, StandardRegistries());
+  EXPECT_TRUE(landed.first_tag_s.has_value());
+  EXPECT_GT(landed.gate_steps.at("open"), 0);
+}
+
 TEST(ClosedLoop, AScenarioThatCannotBeSetUpIsBadInput) {
   Scenario scenario = Shipped("open");
   scenario.start.position << scenario.pad.start, scenario.pad.deck_height;

@@ -17,6 +17,7 @@ namespace touchdown::evaluation {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -297,6 +298,30 @@ TEST(Program, AStepIsAskedAgainWithAnotherBudget) {
   const Ran less = Call({"plan", "--from", step.c_str(), "--set", "planning.max_work=1000"});
   EXPECT_THAT(less.out, HasSubstr("not the recorded answer, which was: planned")) << less.err;
   std::filesystem::remove(file);
+}
+
+TEST(Program, AFlightAndAStepNameTheTermThatForbidsAPlan) {
+  // A cone over the pad that begins far from it: its rows cannot be kept.
+  const auto call = [](std::vector<const char*> words) {
+    for (const char* key : {"terms.approach_corridor.hard=true", "terms.approach_corridor.span=60",
+                            "terms.approach_corridor.angle_deg=5", "solver.limits=hard",
+                            "terms.approach_corridor.radius=0.05", "timeout=2"}) {
+      words.insert(words.end(), {"--set", key});
+    }
+    return Call(words);
+  };
+  EXPECT_THAT(call({"plan", "open"}).out,
+              AllOf(HasSubstr("violates approach_corridor by "),
+                    HasSubstr("failed: limits_exceeded (forbidden by approach_corridor)\n"),
+                    HasSubstr("plan: limits_exceeded (forbidden by approach_corridor): ")));
+  const nlohmann::json plan = nlohmann::json::parse(call({"plan", "open", "--json"}).out);
+  EXPECT_EQ(plan["result"]["forbidden_by"], "approach_corridor");
+  EXPECT_EQ(plan["attempts"].back()["forbidden_by"], "approach_corridor");
+  EXPECT_THAT(call({"land", "open"}).out,
+              AllOf(ContainsRegex("forbidden(, most)? by approach_corridor[.]"),
+                    HasSubstr("; forbidden by: ")));
+  const nlohmann::json flight = nlohmann::json::parse(call({"land", "open", "--json"}).out);
+  EXPECT_GT(flight["replans_forbidden_by"]["approach_corridor"], 0);
 }
 
 TEST(Program, AFormulationThatTheBackendRefusesIsBadInput) {

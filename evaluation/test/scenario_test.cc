@@ -196,6 +196,17 @@ TEST_F(ScenarioTest, AnOutOfRangeValueNamesTheRange) {
   EXPECT_THAT(Refusal("timeout: 1e9\n"), HasSubstr("timeout must be a number in [1, 600] s"));
 }
 
+// As from a map: UTM.
+TEST_F(ScenarioTest, APositionFarAwayIsToldToSubtractAnOrigin) {
+  const auto advised = HasSubstr("'5300000': subtract an origin near the flight");
+  EXPECT_THAT(Refusal("pad: {start: [0, 5300000]}\n"), advised);
+  EXPECT_THAT(Refusal("start: {position: [0, 5300000, 2]}\n"), advised);
+  EXPECT_THAT(Refusal("task: go_to\ngo_to: {goal: [5300000, 0, 2]}\n"), advised);
+  EXPECT_THAT(Refusal("obstacles: {spheres: [{centre: [0, 5300000, 2], radius: 1}]}\n"), advised);
+  EXPECT_THAT(Refusal("pad: {speed: 5300000}\n"), Not(advised));
+  EXPECT_THAT(Refusal("pad: {start: [0, 500]}\n"), Not(HasSubstr("origin")));
+}
+
 TEST_F(ScenarioTest, AWrongWordListsTheAllowedOnes) {
   EXPECT_THAT(Refusal("descent: steep\n"), HasSubstr("descent must be vertical or planned"));
   EXPECT_THAT(Refusal("pad: {motion: figure8}\n"),

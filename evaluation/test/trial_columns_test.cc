@@ -26,6 +26,9 @@ TrialResult Landing() {
   r.replans = 5;
   r.replans_by_status = {{"planned", 3}, {"holding", 2}};
   r.replans_by_reason = {{"search_failed", 2}};
+  r.replans_forbidden_by = {{"tilt_limit", 1}};
+  r.gate_steps = {{"open", 6}, {"no_pad", 4}};
+  set(r.first_tag_s);
   EstimatorQuality& e = r.estimator.emplace();
   set(e.rmse_position_m, e.rmse_velocity_mps, e.nees_position_mean);
   e.samples = 77;
@@ -44,6 +47,7 @@ TrialResult Landing() {
   c.replan_wall_ms = {1.0 / 3.0, 2.0, 5e-324};
   c.replan_cpu_ms = {0.3, 0.25, 1e300};
   c.deadline_misses = 9;
+  c.deadline_misses_cpu = 8;
   return r;
 }
 

@@ -17,12 +17,14 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
 
 const std::string kVehicles = std::string(TOUCHDOWN_SOURCE_DIR) + "/docs/examples/vehicles/";
 
 struct Checked {
   int status = 0;
-  std::string said;
+  std::string out, err;
 };
 
 Checked Call(std::vector<const char*> arguments) {
@@ -32,8 +34,8 @@ Checked Call(std::vector<const char*> arguments) {
   ::testing::internal::CaptureStderr();
   checked.status =
       RunProgram(static_cast<int>(arguments.size()), arguments.data(), StandardRegistries());
-  checked.said = ::testing::internal::GetCapturedStdout();
-  checked.said += ::testing::internal::GetCapturedStderr();
+  checked.out = ::testing::internal::GetCapturedStdout();
+  checked.err = ::testing::internal::GetCapturedStderr();
   return checked;
 }
 
@@ -122,17 +124,18 @@ TEST(VehicleCheck, ProgramSaysWhatIsWrongAndWhatMendsIt) {
   const std::string file = Copied("wrench", "rotor_lag: 0.03\n");  // without its moments
   const Checked faulty = Call({"check-vehicle", file.c_str()});
   EXPECT_EQ(faulty.status, 2);
-  EXPECT_THAT(faulty.said, AllOf(HasSubstr("fault: from hover it can be turned"),
-                                 HasSubstr("remedy: "), HasSubstr("airframe.moment_max")));
+  EXPECT_THAT(faulty.err, AllOf(StartsWith("touchdown: fault: from hover it can be turned"),
+                                HasSubstr("remedy: "), HasSubstr("airframe.moment_max")));
+  EXPECT_THAT(faulty.out, Not(HasSubstr("fault")));
   const Checked good = Call(
       {"check-vehicle", file.c_str(), "--set", "airframe.moment_max=[0.4, 0.4, 0.1]", "--json"});
   EXPECT_EQ(good.status, 0);
-  const auto document = nlohmann::json::parse(good.said);
+  const auto document = nlohmann::json::parse(good.out);
   EXPECT_TRUE(document.at("passed").get<bool>());
   EXPECT_EQ(document.at("model").at("actuators").size(), 4u);
   const Checked missing = Call({"check-vehicle", "/no/such/vehicle.xml"});
   EXPECT_EQ(missing.status, 2);
-  EXPECT_THAT(missing.said, HasSubstr("/no/such/vehicle.xml"));
+  EXPECT_THAT(missing.err, HasSubstr("/no/such/vehicle.xml"));
 }
 
 }  // namespace

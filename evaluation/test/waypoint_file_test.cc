@@ -54,7 +54,10 @@ TEST(WaypointFile, EveryFaultHasItsLine) {
   EXPECT_THAT(Refusal("t,x,y\n0,0\n"), HasSubstr("line 2: there must be 3 columns, not 2"));
   EXPECT_THAT(Refusal("t,x,y\n0,0,0\n1,far,0\n"),
               EndsWith("line 3: x must be a number in [-10000, 10000], not 'far'"));
-  EXPECT_THAT(Refusal("t,x,y\n0,0,nan\n"), HasSubstr("not 'nan'"));
+  EXPECT_THAT(Refusal("t,x,y\n0,0,nan\n"), EndsWith("not 'nan'"));
+  EXPECT_THAT(Refusal("t,x,y\n0,0,5.3e6\n"),
+              EndsWith("not '5.3e6': subtract an origin near the flight from all positions"));
+  EXPECT_THAT(Refusal("t,x,y\n1.7e9,0,0\n"), EndsWith("not '1.7e9'"));
   EXPECT_THAT(Refusal("x,y,speed\n0,0,0\n"), HasSubstr("speed must be a number in [0.01, 20]"));
   EXPECT_THAT(Refusal("# nothing\n"), HasSubstr("must be a first line"));
   EXPECT_THAT(Refusal("x,y,speed\n0,0,1\n2,0,1\n2,0.0004,1\n4,0,1\n"),

@@ -155,10 +155,11 @@ TEST_F(WorldObstacles, AMeshFileIsRefusedWithItsPlaceAndLine) {
                      "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
                      "end_header\n9 9 0\n10 9 0\n9 10 0\n9 9 1\n4 1 2 3 70000000\n"),
               HasSubstr("index.ply"));
-  EXPECT_THAT(Refusal("obstacles:\n  meshes:\n    - {file: " +
-                      Write("far.obj", Obj({"1 3 2", "1 2 4", "2 3 4", "1 4 3"})) +
-                      ", scale: 500000}\n"),
-              AllOf(HasSubstr("world.yaml:3: obstacles.meshes[0]"), HasSubstr("coordinate")));
+  EXPECT_THAT(
+      Refusal("obstacles:\n  meshes:\n    - {file: " +
+              Write("far.obj", Obj({"1 3 2", "1 2 4", "2 3 4", "1 4 3"})) + ", scale: 500000}\n"),
+      AllOf(HasSubstr("world.yaml:3: obstacles.meshes[0]"), HasSubstr("coordinate"),
+            HasSubstr("[0, 100000]: subtract an origin near the flight")));
   EXPECT_THAT(OfMesh("nan.stl",
                      "solid s\nfacet normal 0 0 1\nouter loop\nvertex 9 9 0\nvertex nan 9 0\n"
                      "vertex 9 10 0\nendloop\nendfacet\nendsolid s\n"),

@@ -34,6 +34,22 @@ double ShareOfLimits(const Certificate& certificate, const Limits& limits) {
                   certificate.acceleration_bound / limits.acceleration);
 }
 
+/// The limit that a certificate does not find kept. Of a recovery only the body rate has a name.
+std::string_view LimitBroken(const Certificate& certificate, const Limits& limits) {
+  if (!(certificate.body_rate_bound <= limits.body_rate + kLimitSlack)) return "limits.body_rate";
+  if (certificate.recovering) return {};
+  return certificate.speed_bound > limits.speed + kLimitSlack ? "limits.speed"
+                                                              : "limits.acceleration";
+}
+
+/// The term that forbids the solver's point, by its row or because it has no value there. Its name lasts as long as
+/// the problem.
+std::string_view TermBroken(const solvers::SolverSummary& solver, const LandingProblem& problem) {
+  const bool failed = solver.status == solvers::SolveStatus::kEvaluationFailed;
+  if (solver.worst_term < 0 || !(failed || solver.max_violation > kRowTolerance)) return {};
+  return problem.view().problem().term(solver.worst_term).info().name;
+}
+
 /// [s]
 double BlockedTime(const std::vector<BlockedRun>& blocked) {
   double sum = 0.0;
@@ -73,9 +89,11 @@ void PlanAttempt::Begin(Candidate* candidate) {
   candidate->bound.clear();
   candidate->solved = false;
   candidate->round = -1;
+  candidate->forbidden_by = {};
 }
 
 ReplanReason PlanAttempt::Run(const AttemptRequest& request, ReplanResult* result) {
+  best_.forbidden_by = {};
   best_.reason = Try(request, result);
   if (request.arrival == ArrivalMode::kFree && best_.solved)
     duration_ = best_.pair.curve.duration();
@@ -86,6 +104,8 @@ ReplanReason PlanAttempt::Run(const AttemptRequest& request, ReplanResult* resul
   result->certificate = best_.certificate.value_or(Certificate());
   result->pairs = static_cast<int>(best_.pairs.size());
   result->bound = best_.bound;
+  const bool planned = best_.reason == ReplanReason::kNone;
+  result->forbidden_by = planned ? std::string_view() : best_.forbidden_by;
   if (request.log) {
     request.log->duration = duration_;
     request.log->arrival = request.arrival;
@@ -93,6 +113,7 @@ ReplanReason PlanAttempt::Run(const AttemptRequest& request, ReplanResult* resul
     request.log->best = best_.round;
     request.log->certificate = best_.certificate;
     request.log->reason = best_.reason;
+    request.log->forbidden_by = result->forbidden_by;
   }
   return best_.reason;
 }
@@ -120,8 +141,11 @@ ReplanReason PlanAttempt::Try(const AttemptRequest& request, ReplanResult* resul
   if (holds(found) || !may_keep) return found;
   // If no better plan is found, a committed plan that holds is kept before a later arrival is
   // tried.
+  const std::string_view forbidden_by = best_.forbidden_by;
   const ReplanReason kept = KeepCommitted(request, result);
-  return holds(kept) ? kept : found;
+  if (holds(kept)) return kept;
+  best_.forbidden_by = forbidden_by;
+  return found;
 }
 
 ReplanReason PlanAttempt::FindAnew(const AttemptRequest& request, const UniformBspline* warm,
@@ -401,6 +425,7 @@ ReplanReason PlanAttempt::Solve(const AttemptRequest& request, const Posed& pose
                                    {},
                                    finder_.paths_closed()});
   }
+  candidate->forbidden_by = TermBroken(prepared.solver, problem);
   if (!prepared.solver.usable()) return ReplanReason::kSolverFailed;
   prepared.start.y = prepared.solver.x;
   problem.Curve(prepared.start.y, &candidate->pair.curve);
@@ -432,7 +457,11 @@ ReplanReason PlanAttempt::KeepLimits(const AttemptRequest& request, const Posed&
             ? options_.constants.limit_growth * options_.constants.limit_growth
             : options_.constants.limit_growth;
     // If the solver fails under the pressure, the last curve is kept.
-    if (Solve(request, posed, candidate, result) != ReplanReason::kNone) return reason;
+    const std::string_view forbidden_by = candidate->forbidden_by;
+    if (Solve(request, posed, candidate, result) != ReplanReason::kNone) {
+      candidate->forbidden_by = forbidden_by;
+      return reason;
+    }
   }
 }
 
@@ -462,8 +491,9 @@ ReplanReason PlanAttempt::Finish(const AttemptRequest& request, Candidate* candi
                                                : ReplanReason::kCollisionRemains;
   }
   if (!certificate.start_met() || !certificate.endpoint_met()) return ReplanReason::kSolverFailed;
-  return certificate.limits_kept && rows_kept ? ReplanReason::kUnobserved
-                                              : ReplanReason::kLimitsExceeded;
+  if (certificate.limits_kept && rows_kept) return ReplanReason::kUnobserved;
+  if (rows_kept) candidate->forbidden_by = LimitBroken(certificate, request.limits);
+  return ReplanReason::kLimitsExceeded;
 }
 
 /// Without the terms whose weights grow from round to round.

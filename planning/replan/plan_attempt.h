@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "planning/replan/pair_binder.h"
@@ -102,6 +103,7 @@ class PlanAttempt {
     bool solved = false;
     int round = -1;  // of the log
     ReplanReason reason = ReplanReason::kNone;
+    std::string_view forbidden_by;  // as in ReplanResult
   };
 
   static void Begin(Candidate* candidate);

@@ -10,11 +10,10 @@ namespace touchdown::planning {
 namespace {
 
 // Numbers beyond these count as faults.
-constexpr double kFarthest = 1e6;  // [m]
 constexpr double kFastest = 1e3;   // [m/s]
 constexpr int kMostPairs = 1000;   // of a control point: each has its storage
 
-bool Near(const Eigen::Vector3d& p) { return p.cwiseAbs().maxCoeff() < kFarthest; }
+bool Near(const Eigen::Vector3d& p) { return p.cwiseAbs().maxCoeff() < kFarthestPlace; }
 bool Slow(const Eigen::Vector3d& v) { return v.cwiseAbs().maxCoeff() < kFastest; }
 
 void Require(bool ok, const char* name, double value, const char* range) {
@@ -37,7 +36,10 @@ const char* WrongInState(const ReplanInput& input) {
   if (input.t_start < input.t_now) return "t_start is before t_now";
   if (!vehicle.p_WB.allFinite()) return "vehicle.p_WB is not finite";
   if (!vehicle.v_WB.allFinite()) return "vehicle.v_WB is not finite";
-  if (!Near(vehicle.p_WB)) return "vehicle.p_WB is a million metres away or farther";
+  if (!Near(vehicle.p_WB)) {
+    return "vehicle.p_WB is a million metres away or farther: subtract an origin near the flight "
+           "from all positions";
+  }
   if (!Slow(vehicle.v_WB)) return "vehicle.v_WB is 1000 m/s or faster";
   if (!input.pull_W.allFinite()) return "pull_W is not finite";
   return Plausible(input.margins) ? nullptr : "a margin is not finite, or below 0";
@@ -50,7 +52,10 @@ const char* WrongInPad(const ReplanInput& input) {
     return "the pad or goal is not finite at t_start";
   if (!std::isfinite(pad.yaw)) return "the pad's yaw is not finite";
   if (!pad.cov_p.allFinite()) return "the pad's covariance is not finite";
-  if (!Near(pad.p_WP)) return "the pad or goal is a million metres away or farther";
+  if (!Near(pad.p_WP)) {
+    return "the pad or goal is a million metres away or farther: subtract an origin near the "
+           "flight from all positions";
+  }
   return Slow(pad.v_WP) ? nullptr : "the pad or goal moves with 1000 m/s or faster";
 }
 

@@ -229,7 +229,7 @@ void Replanner::Impl::Begin(const ReplanInput& input) {
   result_.ends_in_contact = DeckOf(input) && input.endpoint.may_touch(options_.contact_height);
   result_.unseen_W.reset();
   result_.reason = ReplanReason::kNone;
-  result_.detail = {};
+  result_.detail = result_.forbidden_by = {};
   result_.certificate = {};
   result_.solver.status = solvers::SolveStatus::kNumericalFailure;
   result_.solver.iterations = result_.solver.evaluations = 0;
@@ -301,6 +301,8 @@ const ReplanResult& Replanner::Impl::Replan(const ReplanInput& input, const Occu
   result_.reason = !target_valid ? ReplanReason::kInvalidInput
                    : looks       ? ReplanReason::kUnobserved
                                  : Plan(input, start, map);
+  // Where cells are to be seen first, no term decides.
+  if (result_.reason == ReplanReason::kUnobserved) result_.forbidden_by = {};
   const FreeSpace space = target_valid ? SpaceOverPad(input, start, WatchedUntil(input), map)
                                        : SpaceWithoutPad(input, map);
   if (target_valid && DeckOf(input)) {

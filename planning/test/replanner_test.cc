@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -248,8 +249,8 @@ TEST(Replanner, NamesWhyThereIsNoPlan) {
       {"before t_now", [](ReplanInput* input, double) { input->t_start = -1.0; }, &pad},
       {"p_WB is not", [](ReplanInput* input, double none) { input->vehicle.p_WB.x() = none; },
        &pad},
-      {"p_WB is a million", [](ReplanInput* input, double) { input->vehicle.p_WB.x() = 1e7; },
-       &pad},
+      {"p_WB is a million metres away or farther: subtract an origin",
+       [](ReplanInput* input, double) { input->vehicle.p_WB.x() = 1e7; }, &pad},
       {"v_WB is not", [](ReplanInput* input, double none) { input->vehicle.v_WB.x() = none; },
        &pad},
       {"v_WB is 1000", [](ReplanInput* input, double) { input->vehicle.v_WB.x() = 2e3; }, &pad},
@@ -257,7 +258,8 @@ TEST(Replanner, NamesWhyThereIsNoPlan) {
       {"margin", [](ReplanInput* input, double) { input->margins.tracking = -1.0; }, &pad},
       {"no pad", [](ReplanInput* input, double) { input->pad = nullptr; }, &pad},
       {"goal is not finite", [](ReplanInput*, double) {}, &nowhere},
-      {"goal is a million", [](ReplanInput*, double) {}, &away},
+      {"goal is a million metres away or farther: subtract an origin", [](ReplanInput*, double) {},
+       &away},
       {"endpoint", [](ReplanInput* input, double none) { input->endpoint.height = none; }, &pad},
       {"arrival_sink", [](ReplanInput* input, double) { input->endpoint.arrival_sink = -1.0; },
        &pad},
@@ -348,6 +350,81 @@ TEST(Replanner, ACutSolveThatViolatesARowIsNoPlan) {
   for (const double tilt_max : {0.02, 0.05, 0.1, 0.2}) {
     plan(solvers::StandardBackends(), tilt_max, "banded");
   }
+}
+
+// What forbids the first plan, in the answer and in the log of its last attempt.
+std::string ForbiddenBy(const ReplannerOptions& options, const solvers::BackendRegistry& backends,
+                        ReplanReason reason) {
+  const OccupancyMap map = ObservedMap();
+  const ArcPad pad({5.0, 0.0, 0.3}, 0.5, 0.0, 0.0);
+  const Eigen::Vector3d start(-4.0, 0.0, 1.5);
+  Replanner replanner(options, backends);
+  replanner.CommitHover(start, 0.0);
+  ReplanLog log;
+  replanner.set_log(&log);
+  const ReplanResult& result = replanner.Replan(Input(start, pad, 0.0), map);
+  EXPECT_NE(result.status, ReplanStatus::kPlanned);
+  EXPECT_EQ(result.reason, reason) << ToString(result.reason);
+  EXPECT_FALSE(log.attempts.empty());
+  if (log.attempts.empty()) return "";
+  EXPECT_EQ(log.attempts.back().forbidden_by, result.forbidden_by);
+  return std::string(result.forbidden_by);
+}
+
+// u = value, wherever a control point is.
+struct OwnMap {
+  static constexpr int kBlockSize = 3, kWindow = 1, kOutputs = 1;
+  static constexpr bool kUsesInterval = false, kLinearInBlocks = false;
+  double value;
+  int windows() const { return 1; }
+  int first_block(int) const { return 4; }
+  template <class T>
+  void operator()(int, const T* q, const T&, const T&, T* u) const {
+    u[0] = value + 0.0 * q[0];
+  }
+};
+
+ReplannerOptions WithOwnTerm(double value, bool hard) {
+  ReplannerOptions options = Options(ArrivalMode::kFixed);
+  TermEntry own;
+  own.info = {"own", "", "", "", false};
+  own.default_weight = 1.0;
+  own.parameters = {HingeWidth(0.2, "m")};
+  own.make = [info = own.info, value](const TermSetup& setup) {
+    return MakeLandingTerm(info, OwnMap{value}, setup.Hinge(), 1);
+  };
+  options.problem.terms.push_back(own);
+  options.problem.settings = {{"own", {}, hard, {}}};
+  return options;
+}
+
+TEST(Replanner, ARefusedPlanNamesTheTermThatForbidsIt) {
+  // Rows that no curve keeps; a cost that has no value.
+  for (const auto& [value, hard] : {std::pair(1.0, true), std::pair(std::nan(""), false)}) {
+    EXPECT_EQ(ForbiddenBy(WithOwnTerm(value, hard), solvers::StandardBackends(),
+                          ReplanReason::kSolverFailed),
+              "own");
+  }
+  // Rows that a point which is cut short violates.
+  ReplannerOptions options = Options(ArrivalMode::kFixed);
+  options.max_duration = 10.0;
+  options.backend = "cut";
+  options.problem.vehicle.tilt_max = 0.02;
+  options.problem.settings = {{"tilt_limit", {}, true, {}}};
+  EXPECT_EQ(ForbiddenBy(options, OnlyCut(0.0), ReplanReason::kLimitsExceeded), "tilt_limit");
+}
+
+// The certificate forbids what no row does.
+TEST(Replanner, ARefusedPlanNamesTheLimitThatForbidsIt) {
+  ReplannerOptions options = Options(ArrivalMode::kFixed);
+  options.limits.body_rate = 1e-4;
+  EXPECT_EQ(ForbiddenBy(options, solvers::StandardBackends(), ReplanReason::kLimitsExceeded),
+            "limits.body_rate");
+  options = Options(ArrivalMode::kFixed);
+  options.backend = "cut";  // it leaves the guess, which is too fast in the middle
+  options.max_iterations = 1;
+  options.max_duration = 6.0;
+  EXPECT_EQ(ForbiddenBy(options, OnlyCut(0.0), ReplanReason::kLimitsExceeded), "limits.speed");
 }
 
 TEST(Replanner, ACutSolveThatStartsElsewhereIsNoPlan) {

@@ -49,8 +49,11 @@ void ValidateOne(const Sphere& sphere, const std::string& name) {
 void ValidateOne(const Mesh& mesh, const std::string& name) {
   if (mesh.surface == nullptr) throw std::invalid_argument(name + ": a mesh without a surface");
   for (const Eigen::Vector3d& corner : {mesh.surface->bounds().min, mesh.surface->bounds().max}) {
-    estimation::CheckWithin(name + ": greatest coordinate of its mesh [m]", corner.cwiseAbs().maxCoeff(), 0.0,
-                            kMaxCoordinate);
+    const double farthest = corner.cwiseAbs().maxCoeff();
+    if (farthest <= kMaxCoordinate) continue;
+    estimation::ThrowOutOfRange(name + ": greatest coordinate of its mesh [m]", farthest,
+                                "[0, " + std::to_string(static_cast<int>(kMaxCoordinate)) +
+                                    "]: subtract an origin near the flight from all positions");
   }
 }
 

@@ -28,6 +28,7 @@ void Evaluator::Begin(const View& view, const Stop& stop, GapRule* rule) {
   stop_status_ = SolveStatus::kConverged;
   has_best_ = false;
   best_cost_ = first_cost_ = best_violation_ = 0.0;
+  worst_term_ = -1;
   std::fill(best_cost_by_term_.begin(), best_cost_by_term_.end(), 0.0);
   storage_.HoldParameters();
   trace_.clear();
@@ -167,6 +168,7 @@ void Evaluator::PreferLastIfFeasible() {
 void Evaluator::Keep() {
   has_best_ = true;
   best_violation_ = storage_.full.max_violation;
+  worst_term_ = storage_.full.worst_term;
   best_cost_ = storage_.full.value;
   best_ = cached_;
   best_cost_by_term_ = storage_.full.cost_by_term;

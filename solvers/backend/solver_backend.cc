@@ -173,8 +173,10 @@ void SolverBackend::Solve(const View& view, const WarmStart& warm, const Stop& s
     result->status = evaluator_.stop_status();
   }
   if (!evaluator_.has_best()) result->status = SolveStatus::kEvaluationFailed;
+  result->worst_term = evaluator_.worst_term();
   if (result->status == SolveStatus::kEvaluationFailed) {
     result->message = WhatFailed(view.problem(), evaluator_.last().full);
+    result->worst_term = evaluator_.last().full.failed_term;
   }
 
   result->optimality = {};

@@ -167,6 +167,7 @@ bool Problem::EvaluateAll(const double* x, double h, Want want, const Lagrangian
   const TermInput input{x, h, t0_, shape_.free_interval};
   evaluation->value = 0.0;
   evaluation->max_violation = 0.0;
+  evaluation->worst_term = -1;
   evaluation->failed_term = -1;
   evaluation->failure.clear();
   want.gradient = want.gradient || want.hessian;
@@ -275,7 +276,9 @@ bool Problem::AddViolation(std::size_t i, bool gradient, Evaluation* evaluation)
   for (int j = 0; j < block.rows(); ++j) {
     const double violation = std::max(bounds.lo - block.u[j], block.u[j] - bounds.hi);
     if (!std::isfinite(block.u[j])) return false;
-    evaluation->max_violation = std::max(evaluation->max_violation, violation);
+    if (violation <= evaluation->max_violation) continue;
+    evaluation->max_violation = violation;
+    evaluation->worst_term = static_cast<int>(i);
   }
   // A row may have a value where its slope has none.
   const auto rows = static_cast<std::size_t>(block.rows());

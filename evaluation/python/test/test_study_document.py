@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """One text in two forms."""
+import html
+import re
+
 import pytest
 
 pytest.importorskip("statsmodels")
 
-from touchdown_report.study.document import Document  # noqa: E402
+from touchdown_report.study.document import Document, plain  # noqa: E402
 from touchdown_report.study.statistics import Estimate  # noqa: E402
 from touchdown_report.study.texts import interval, number, of, p_value  # noqa: E402
 
@@ -34,6 +37,20 @@ def test_html_stands_alone(tmp_path):
     assert '<td class="number">1.5</td>' in text and "<td>2 of 3</td>" in text
     assert 'src="data:image/png;base64,iVBORy4uLg=="' in text
     assert "http" not in text and 'href="#first-part"' in text
+
+
+def test_titles_are_no_markup(tmp_path):
+    title = "a|b *c* `d` [e](http://f) <img src=x> \\ _g_ h_i\n# j"
+    document = Document(title)
+    document.table([plain(title), "n"], [[plain(title), "**1**"]])
+    text = document.markdown()
+    row = next(line for line in text.splitlines() if "**1**" in line)
+    assert row.count("|") == 3 and not re.search(r"[*`<>\[\]\\]", row.replace("**1**", ""))
+    assert len(text.splitlines()) == 5 and "h_i # j" in text
+    page = document.html(str(tmp_path))
+    shown = html.unescape(page.split("<td>")[1].split("</td>")[0])
+    assert shown == " ".join(title.split()) and "<img" not in page and "<a " not in page.split("<h1>")[1]
+    assert document.tables()[0]["rows"] == [[" ".join(title.split()), "**1**"]]
 
 
 def test_figures_as_text():

@@ -123,6 +123,9 @@ class TrialResult:
     replans: int
     replans_by_status: Dict[str, int]
     replans_by_reason: Dict[str, int]
+    replans_forbidden_by: Dict[str, int]
+    gate_steps: Dict[str, int]
+    first_tag_s: Optional[float]
     following: Optional[Dict[str, Any]]
     estimator: Optional[Dict[str, Any]]
     own_state: Optional[Dict[str, Any]]

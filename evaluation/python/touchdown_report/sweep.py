@@ -20,7 +20,7 @@ from touchdown_report import command_line, database  # noqa: E402
 from touchdown_report.outcomes import DONE  # noqa: E402
 from touchdown_report.style import STYLE, sign  # noqa: E402
 
-SUPPORTED_VERSION = "8"
+SUPPORTED_VERSION = "9"
 MOST_LISTS = 2
 LANDED, FAILED = "#0072B2", "#D55E00"
 

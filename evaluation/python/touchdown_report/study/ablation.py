@@ -17,7 +17,7 @@ def rows(study, comparisons):
             )
         out.append(
             [
-                study.method_title(row["method"]),
+                study.method_words(row["method"]),
                 str(row["pairs"]),
                 str(row["reference_only"]),
                 str(row["method_only"]),

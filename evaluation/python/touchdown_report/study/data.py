@@ -7,8 +7,9 @@ import urllib.parse
 import pandas as pd
 
 from touchdown_report import database
+from touchdown_report.study.document import plain
 
-SUPPORTED_VERSION = "8"
+SUPPORTED_VERSION = "9"
 
 
 class StudyError(Exception):
@@ -80,6 +81,13 @@ class Study:
 
     def method_title(self, name):
         return self._title("methods", name)
+
+    def cell_words(self, name):
+        """The title, for a Document."""
+        return plain(self.cell_title(name))
+
+    def method_words(self, name):
+        return plain(self.method_title(name))
 
     def labels(self, cell):
         return next(entry["labels"] for entry in self.plan["cells"] if entry["name"] == cell)

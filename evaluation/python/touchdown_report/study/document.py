@@ -21,6 +21,12 @@ code { background: #f5f5f5; padding: 0 0.2rem; } pre { background: #f5f5f5; padd
 NUMBER = re.compile(r"^[-+<]?\s?[\d.]+(e-?\d+)?( ?%)?$")
 
 
+def plain(words):
+    """Words from outside, such as a title, for a text of a Document: nothing in them is markup, in either form."""
+    words = re.sub(r"[\\`*<>\[\]|&~]|(?<!\w)_|_(?!\w)", lambda special: f"&#{ord(special[0])};", words)
+    return " ".join(words.split())
+
+
 def _inline(text):
     """HTML of a line with `code`, **bold** and [links](to/a/file)."""
     return "".join(
@@ -30,7 +36,8 @@ def _inline(text):
 
 
 def _prose(text):
-    text = re.sub(r"\*\*([^*]+)\*\*", r"<b>\1</b>", html.escape(text, quote=False))
+    text = re.sub(r"&amp;(#\d+;)", r"&\1", html.escape(text, quote=False))  # of plain()
+    text = re.sub(r"\*\*([^*]+)\*\*", r"<b>\1</b>", text)
     return re.sub(r'\[([^]]+)\]\(([^)"]+)\)', r'<a href="\2">\1</a>', text)
 
 
@@ -39,7 +46,8 @@ def _anchor(title):
 
 
 class Document:
-    """Blocks in their order. Pictures are files in the document's folder."""
+    """Blocks in their order, their texts with `code`, **bold** and [links](to/a/file). The title has no markup.
+    Pictures are files in the document's folder."""
 
     def __init__(self, title):
         self.title = title
@@ -67,17 +75,19 @@ class Document:
         self._blocks.append(("picture", path, caption))
 
     def tables(self):
-        """Every table as it is shown: {chapter, columns, rows}, the chapter being the heading above it."""
+        """Every table as it is shown: {chapter, columns, rows}, the chapter being the heading above it. Words that
+        plain() made are again as they were."""
         shown, chapter = [], ""
         for kind, *block in self._blocks:
             if kind == "heading":
                 chapter = block[1]
             elif kind == "table":
-                shown.append({"chapter": chapter, "columns": block[0], "rows": block[1]})
+                columns, *rows = [[html.unescape(text) for text in row] for row in (block[0], *block[1])]
+                shown.append({"chapter": chapter, "columns": columns, "rows": rows})
         return shown
 
     def markdown(self):
-        out = [f"# {self.title}", ""]
+        out = [f"# {plain(self.title)}", ""]
         for kind, *block in self._blocks:
             if kind == "heading":
                 out += ["#" * block[0] + " " + block[1], ""]
@@ -104,7 +114,7 @@ class Document:
             "<!DOCTYPE html>",
             f'<html lang="en"><head><meta charset="utf-8"><title>{html.escape(self.title)}</title>',
             f"<style>{CSS}</style></head><body>",
-            f"<h1>{_inline(self.title)}</h1>",
+            f"<h1>{html.escape(self.title, quote=False)}</h1>",
             f'<ul class="contents">{contents}</ul>',
         ]
         for kind, *block in self._blocks:

@@ -151,7 +151,7 @@ def baseline_rows(study):
             behind = f"{interval(estimate)} (n {estimate.n} of {len(followed)})"
         rows.append(
             [
-                study.method_title(method),
+                study.method_words(method),
                 _landed(study, "figure_4", method),
                 ", ".join(f"{count} {name}" for name, count in ends.items() if name != "landed") or "–",
                 behind,

@@ -4,7 +4,7 @@ import json
 import os
 
 from touchdown_report.study import ablation, figures, paper, solvers, tables
-from touchdown_report.study.document import Document
+from touchdown_report.study.document import Document, plain
 from touchdown_report.study.statistics import Estimate
 from touchdown_report.study.style import Gallery
 from touchdown_report.study.texts import duration, interval, number, of, p_value
@@ -30,8 +30,8 @@ def _success(study, document, gallery, parts):
     rows = []
     for cell in study.cells():
         mine = parts[parts["cell"] == cell].set_index("method")
-        rows.append([study.cell_title(cell)] + [_rate(mine.loc[m]) if m in mine.index else "" for m in methods])
-    document.table(["cell", *(study.method_title(m) for m in methods)], rows)
+        rows.append([study.cell_words(cell)] + [_rate(mine.loc[m]) if m in mine.index else "" for m in methods])
+    document.table(["cell", *(study.method_words(m) for m in methods)], rows)
     path = gallery.keep("success", figures.success, study, parts)
     document.picture(path, "Success of each method in each cell, with 95 % Clopper-Pearson intervals.")
 
@@ -40,7 +40,7 @@ def _outcomes(study, document, gallery, counts):
     document.heading(2, "How the trials ended")
     names = [name for name in counts.columns if counts[name].sum() > 0]
     rows = [
-        [study.cell_title(cell), study.method_title(method), *(str(row[n]) if row[n] else "" for n in names)]
+        [study.cell_words(cell), study.method_words(method), *(str(row[n]) if row[n] else "" for n in names)]
         for (cell, method), row in counts.iterrows()
     ]
     path = gallery.keep("outcomes", figures.outcomes, study, counts)
@@ -64,8 +64,8 @@ def _times(study, document, gallery, parts):
         half = Estimate(row["half_landed_s"], row["half_landed_lo_s"], row["half_landed_hi_s"], 0)
         rows.append(
             [
-                study.cell_title(row["cell"]),
-                study.method_title(row["method"]),
+                study.cell_words(row["cell"]),
+                study.method_words(row["method"]),
                 f"{row['succeeded']} of {row['trials']}",
                 interval(half, 1),
                 interval(_estimate(row, "time_to_land_median_s"), 1),
@@ -94,7 +94,7 @@ def _times(study, document, gallery, parts):
 def _comparisons(study, document, comparisons):
     if comparisons.empty:
         return
-    reference = study.method_title(study.reference)
+    reference = study.method_words(study.reference)
     document.heading(2, f"Against {reference}, on the same seeds")
     document.text(
         "Exact McNemar test of the success of paired trials in a cell: the same seed is the same world, start, wind and "
@@ -110,8 +110,8 @@ def _comparisons(study, document, comparisons):
         pooled = row["cell"] == tables.ALL_CELLS
         rows.append(
             [
-                "**all cells**" if pooled else study.cell_title(row["cell"]),
-                study.method_title(row["method"]),
+                "**all cells**" if pooled else study.cell_words(row["cell"]),
+                study.method_words(row["method"]),
                 f"{row['pairs']} ({row['seeds']} seeds)" if pooled else str(row["pairs"]),
                 str(row["reference_only"]),
                 str(row["method_only"]),
@@ -148,8 +148,8 @@ def _failures(study, document, failures):
     )
     rows = [
         [
-            study.cell_title(r.cell),
-            study.method_title(r.method),
+            study.cell_words(r.cell),
+            study.method_words(r.method),
             r.outcome,
             study.page_link(f"trial_{r.trial}"),
             f"`{r.command}`",
@@ -163,7 +163,7 @@ def _failures(study, document, failures):
 
 def _recorded(study, document):
     rows = [
-        [study.cell_title(cell), study.method_title(method), study.page_link(f"{cell}-{method}")]
+        [study.cell_words(cell), study.method_words(method), study.page_link(f"{cell}-{method}")]
         for cell in study.cells()
         for method in study.methods()
     ]
@@ -174,7 +174,7 @@ def _recorded(study, document):
     document.text("The first trial of these, each in a page of its own, beside its record in `records/`.")
     document.table(["cell", "method", "flight"], rows)
     others = [
-        [str(trial.trial), study.cell_title(trial.cell), study.method_title(trial.method), trial.outcome, link]
+        [str(trial.trial), study.cell_words(trial.cell), study.method_words(trial.method), trial.outcome, link]
         for trial in study.trials.itertuples()
         if (link := study.page_link(f"trial_{trial.trial}"))
     ]
@@ -207,13 +207,13 @@ def _how(study, document):
         document.heading(3, "Not flown")
         document.table(
             ["cell", "method", "why"],
-            [[study.cell_title(p["cell"]), study.method_title(p["method"]), p["refusal"]] for p in refused],
+            [[study.cell_words(p["cell"]), study.method_words(p["method"]), plain(p["refusal"])] for p in refused],
         )
     document.heading(3, "Methods")
     document.table(
         ["method", "what is set"],
         [
-            [m["title"], " ".join(f"`{k}={v}`" for k, v in m["set"].items()) or "nothing: the defaults"]
+            [study.method_words(m["name"]), " ".join(f"`{k}={v}`" for k, v in m["set"].items()) or "nothing: the defaults"]
             for m in plan["methods"]
             if m["name"] in study.methods()
         ],
@@ -250,8 +250,8 @@ def _headline(study, document, parts):
             continue
         worst = rows.loc[(rows["succeeded"] / rows["trials"]).idxmin()]
         points.append(
-            f"{study.method_title(method)}: {rows['succeeded'].sum()} of {rows['trials'].sum()} landed over all cells; "
-            f"nowhere less than {_rate(worst)} ({study.cell_title(worst['cell'])})"
+            f"{study.method_words(method)}: {rows['succeeded'].sum()} of {rows['trials'].sum()} landed over all cells; "
+            f"nowhere less than {_rate(worst)} ({study.cell_words(worst['cell'])})"
         )
     document.points(points)
 

@@ -98,8 +98,8 @@ def write(study, document, gallery, parts, comparisons):
         ["cell", "backend", "steps", "median [ms]", "p95 [ms]", "p99 [ms]", "worst [ms]", "deadlines missed"],
         [
             [
-                study.cell_title(row["cell"]),
-                study.method_title(row["method"]),
+                study.cell_words(row["cell"]),
+                study.method_words(row["method"]),
                 str(row["steps"]),
                 *(number(row[f"cpu_{q}_ms"], 2) for q in ("median", "p95", "p99", "max")),
                 f"{row['deadline_misses']} ({percent(row['deadline_miss_share'])})",
@@ -112,7 +112,7 @@ def write(study, document, gallery, parts, comparisons):
     path = gallery.keep("profile", draw_profile, study, costs)
     document.picture(
         path,
-        f"Dolan and More's performance profile over {len(costs)} worlds ({', '.join(study.cell_title(c) for c in cells)}); "
+        f"Dolan and More's performance profile over {len(costs)} worlds ({', '.join(study.cell_words(c) for c in cells)}); "
         "a world that a backend did not land in counts as infinitely slow. Ranks below the leader depend on who else is compared.",
     )
     document.heading(2, "Quality of what is flown")
@@ -124,8 +124,8 @@ def write(study, document, gallery, parts, comparisons):
         ["cell", "backend", "time over T*", "effort [N² s]", "touchdown error [cm]"],
         [
             [
-                study.cell_title(row["cell"]),
-                study.method_title(row["method"]),
+                study.cell_words(row["cell"]),
+                study.method_words(row["method"]),
                 *(
                     interval(Estimate(*(scale * row[f"{name}{end}"] for end in ("", "_lo", "_hi")), 0), digits)
                     for name, scale, digits in (
@@ -140,4 +140,4 @@ def write(study, document, gallery, parts, comparisons):
     )
     if not comparisons.empty:
         path = gallery.keep("differences", figures.differences, study, comparisons)
-        document.picture(path, f"Paired differences to {study.method_title(study.reference)} over all cells.")
+        document.picture(path, f"Paired differences to {study.method_words(study.reference)} over all cells.")

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "touchdown/planning/certify/certificate.h"
@@ -34,6 +35,7 @@ struct AttemptLog {
   int best = -1;                           ///< the round that the answer is from; -1: none
   std::optional<Certificate> certificate;  ///< of that round, if it came to one
   ReplanReason reason = ReplanReason::kNone;
+  std::string forbidden_by;  ///< as in ReplanResult
 };
 
 struct ReplanLog {

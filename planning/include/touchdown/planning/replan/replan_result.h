@@ -59,6 +59,9 @@ struct ReplannerOptions {
   StepConstants constants;  ///< what else a step decides by
 };
 
+/// Nothing is planned at positions whose coordinates reach this [m]: single cells and millimetres would be lost in them.
+inline constexpr double kFarthestPlace = 1e6;
+
 /// What one replanning step is asked. Plain data: a record can hold it and play it again.
 struct ReplanInput {
   double t_now = 0.0;                ///< when the question is put [s]
@@ -158,6 +161,9 @@ struct ReplanResult : FlightPair {
   /// With kInvalidInput the part of the input that is not valid. For the EGO-Planner baseline its name of its plan
   /// call's outcome. Else empty.
   std::string_view detail;
+  /// Of a Replanner without a new plan: the term whose rows the plan that was tried violates, or the limit
+  /// (limits.speed, …) that it exceeds. Empty: none. Valid as long as the planner.
+  std::string_view forbidden_by;
   bool ends_in_contact = false;  ///< the requested plan does
   bool idle = false;             ///< the planner had nothing to do: there is no answer
   bool committed = false;        ///< a pair was proven in this step and takes over at t_start

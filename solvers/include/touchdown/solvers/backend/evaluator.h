@@ -79,6 +79,8 @@ class Evaluator {
   /// Of the first point that could be evaluated.
   double first_cost() const { return first_cost_; }
   double best_violation() const { return best_violation_; }
+  /// Of that violation; -1: none, or a bound.
+  int worst_term() const { return worst_term_; }
   const std::vector<double>& best_cost_by_term() const { return best_cost_by_term_; }
 
   std::vector<IterationRecord> TakeTrace() { return std::move(trace_); }
@@ -110,6 +112,7 @@ class Evaluator {
   double best_cost_ = 0.0;
   double first_cost_ = 0.0;
   double best_violation_ = 0.0;
+  int worst_term_ = -1;
   std::vector<IterationRecord> trace_;
   SolveShares shares_;
   Share share_ = Share::kAdapter;

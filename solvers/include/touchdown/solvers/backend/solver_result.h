@@ -99,6 +99,9 @@ struct SolverSummary {
   double cost = 0.0;
   std::vector<TermCost> cost_by_term;
   double max_violation = 0.0;  ///< worst constraint violation at the point
+  /// The term whose row that is, or with kEvaluationFailed the one that failed, by its place in
+  /// cost_by_term; -1: none, or a bound of a variable.
+  int worst_term = -1;
   int iterations = 0;
   int evaluations = 0;  ///< evaluations of value, gradient or residuals
   double wall_s = 0.0;

@@ -34,6 +34,7 @@ struct Evaluation {
   std::string failure;               ///< what it threw, or why nothing was evaluated
   double value = 0.0;                ///< sum of the cost terms
   double max_violation = 0.0;        ///< worst violation of a constraint row or a bound
+  int worst_term = -1;               ///< whose row that is; -1: none, or a bound
   std::vector<double> gradient;      ///< of the objective: blocks x d, then h if free
   std::vector<double> row_gradient;  ///< sum of multiplier x row, filled with the Hessian
   BorderedBandMatrix hessian;        ///< of the Lagrangian

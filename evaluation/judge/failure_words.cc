@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "evaluation/judge/failure_words.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "touchdown/control/mission/landing_state_machine.h"
+
+namespace touchdown::evaluation {
+namespace {
+
+int Sum(const StepCounts& counts) {
+  int sum = 0;
+  for (const auto& [name, count] : counts) sum += count;
+  return sum;
+}
+
+// The first by name of those that are equal. There is one.
+const std::string& MostFrequent(const StepCounts& counts) {
+  return std::max_element(counts.begin(), counts.end(),
+                          [](const auto& a, const auto& b) { return a.second < b.second; })
+      ->first;
+}
+
+// "for NAME" of a single one, else "most for NAME".
+std::string Most(const char* word, const StepCounts& counts) {
+  return fmt::format("{}{} {}", counts.size() > 1 ? "most " : "", word, MostFrequent(counts));
+}
+
+}  // namespace
+
+std::string NoPlanSentence(const TrialResult& result, std::string_view last) {
+  const StepCounts& reasons = result.replans_by_reason;
+  if (reasons.empty()) return {};
+  std::string text = fmt::format(" No new plan in {} of {} steps, {}", Sum(reasons), result.replans,
+                                 Most("for", reasons));
+  if (!last.empty() && last != MostFrequent(reasons)) text += fmt::format(", at last for {}", last);
+  if (const StepCounts& terms = result.replans_forbidden_by; !terms.empty()) {
+    text += fmt::format("; {} of them forbidden{}{}", Sum(terms), terms.size() > 1 ? ", " : " ",
+                        Most("by", terms));
+  }
+  return text + ".";
+}
+
+std::string GateSentence(const TrialResult& result, std::string_view last) {
+  const std::string open(control::ToString(control::Gate::kOpen));
+  StepCounts closed = result.gate_steps;
+  closed.erase(open);
+  if (closed.empty()) return {};
+  const bool ever = result.gate_steps.contains(open);
+  const double share = static_cast<double>(Sum(closed)) / Sum(result.gate_steps);
+  std::string text = fmt::format(
+      " The landing condition was {}, {}",
+      ever ? fmt::format("closed for {:.0f} % of the time", 100.0 * share) : "never open",
+      Most("for", closed));
+  if (last == open) {
+    text += ", and open at the end";
+  } else if (last != MostFrequent(closed)) {
+    text += fmt::format(", at the end for {}", last);
+  }
+  return text + ".";
+}
+
+}  // namespace touchdown::evaluation

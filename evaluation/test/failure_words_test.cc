@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "evaluation/judge/failure_words.h"
+
+#include <gtest/gtest.h>
+
+namespace touchdown::evaluation {
+namespace {
+
+TEST(FailureWords, TheReasonThatStoodMostIsNamedNotTheLast) {
+  TrialResult result;
+  result.replans = 300;
+  EXPECT_EQ(NoPlanSentence(result, ""), "");
+  result.replans_by_reason = {{"goal_blocked", 120}, {"unobserved", 1}};
+  EXPECT_EQ(NoPlanSentence(result, "unobserved"),
+            " No new plan in 121 of 300 steps, most for goal_blocked, at last for unobserved.");
+  EXPECT_EQ(NoPlanSentence(result, ""), " No new plan in 121 of 300 steps, most for goal_blocked.");
+  result.replans_by_reason = {{"limits_exceeded", 40}};
+  result.replans_forbidden_by = {{"reach", 40}};
+  EXPECT_EQ(NoPlanSentence(result, "limits_exceeded"),
+            " No new plan in 40 of 300 steps, for limits_exceeded; 40 of them forbidden by reach.");
+  result.replans_forbidden_by = {{"limits.speed", 3}, {"reach", 37}};
+  EXPECT_EQ(NoPlanSentence(result, "limits_exceeded"),
+            " No new plan in 40 of 300 steps, for limits_exceeded; 40 of them forbidden, "
+            "most by reach.");
+}
+
+TEST(FailureWords, WhatTheLandingConditionLackedMostAndAtTheEnd) {
+  TrialResult result;
+  EXPECT_EQ(GateSentence(result, "no_pad"), "");
+  result.gate_steps = {{"open", 500}};
+  EXPECT_EQ(GateSentence(result, "open"), "");
+  result.gate_steps = {{"tags_unseen", 800}};
+  EXPECT_EQ(GateSentence(result, "tags_unseen"),
+            " The landing condition was never open, for tags_unseen.");
+  result.gate_steps = {{"no_pad", 100}, {"open", 200}, {"tags_unseen", 700}};
+  EXPECT_EQ(GateSentence(result, "no_pad"),
+            " The landing condition was closed for 80 % of the time, most for tags_unseen, at the "
+            "end for no_pad.");
+  EXPECT_EQ(GateSentence(result, "open"),
+            " The landing condition was closed for 80 % of the time, most for tags_unseen, and "
+            "open at the end.");
+}
+
+}  // namespace
+}  // namespace touchdown::evaluation
