@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "control/onboard/flight_clock.h"
 #include "control/onboard/pilot.h"
 #include "control/onboard/senses.h"
 #include "estimation/base/argument_check.h"
@@ -19,7 +20,8 @@ namespace {
 
 using solvers::AddThreadCpu;
 
-constexpr double kForceHolds = 0.1;  // a foot force says something for so long [s]
+// So many steps without a time, and a set-point has been flown for as long as it counts, at 500 Hz.
+constexpr int kMostRefused = 50;
 
 const OnboardParts& Whole(const OnboardParts& parts) {
   if (!parts.planner) throw std::invalid_argument("OnboardParts::planner is missing");
@@ -63,9 +65,7 @@ struct Onboard::Parts {
         replan_clock(options.replan_rate),
         close_clock(options.close_rate) {}
 
-  double FootForceAt(double t) const {
-    return std::abs(t - force_t) <= kForceHolds ? foot_force : 0.0;
-  }
+  double FootForceAt(double t) const { return std::abs(t - force_t) <= kCounts ? foot_force : 0.0; }
 
   void Mission(double t) {
     pilot->StepMission(senses.own(), senses.pad(), senses.DepthAge(t), FootForceAt(t),
@@ -73,9 +73,8 @@ struct Onboard::Parts {
   }
 
   void Plan(double t) {
-    plan.asked = nullptr;
-    plan.answer = nullptr;
-    plan.idle = false;
+    if (awaits_own && !KnowsAttitude(senses.own().Status(t))) return;
+    awaits_own = false;
     const bool usual = replan_clock.Due(t), close = close_clock.Due(t);
     if (!(pilot->plans_often() ? close : usual)) return;
     if (keep_before) plan.before = pilot->replanner_state();
@@ -96,9 +95,29 @@ struct Onboard::Parts {
     return Taken::kUsed;
   }
 
-  void Control(double t) {
-    const PilotCommand command = pilot->Control(senses.own());
+  /// A new time is known, or none.
+  void Judge(double t) {
+    status.time = clock.Step(t);
+    ++steps[static_cast<std::size_t>(status.time)];
+    status.mission_step = false;
+    plan.asked = nullptr;
+    plan.answer = nullptr;
+    plan.idle = false;
+    refused = IsFlown(status.time) ? 0 : refused + 1;
+    if (refused == kMostRefused) Command(pilot->Level(senses.own().now().t));
+    if (status.time != StepTime::kResumed) return;
+    senses.Forget();
+    pilot->Resume();
+    awaits_own = true;
+  }
+
+  /// From the caller's time t on [s].
+  void StampSetpoint(double t) {
     setpoint.t = t;
+    setpoint.valid_until = t + kCounts;
+  }
+
+  void Command(const PilotCommand& command) {
     setpoint.armed = pilot->mission().motors_armed;
     setpoint.thrusts = command.mix.thrusts;
     setpoint.saturated = command.mix.saturated;
@@ -123,13 +142,17 @@ struct Onboard::Parts {
   estimation::SampleClock mission_clock, replan_clock, close_clock;
   double foot_force = 0.0;  ///< [N]
   double force_t = -std::numeric_limits<double>::infinity();
-  std::optional<double> stepped;  ///< the time of the last step [s]
+  FlightClock clock;
+  int refused = 0;  ///< steps in a row
+  bool awaits_own =
+      false;  ///< after a stall or another clock: no plan begins at a state from before
   bool keep_before = false;
   Setpoint setpoint;
   OnboardStatus status;
   OnboardPlan plan;
   OnboardTimes times;
   std::array<int, kTakenKinds> taken{};
+  std::array<int, kStepTimes> steps{};
 };
 
 Onboard::Onboard(OnboardOptions options, OnboardParts parts) {
@@ -149,20 +172,47 @@ Taken Onboard::Counted(Taken taken) {
   return taken;
 }
 
-Taken Onboard::Take(const estimation::VehicleState& s) { return Counted(it_->senses.TakeOwn(s)); }
-Taken Onboard::Take(const estimation::ImuSample& s) { return Counted(it_->senses.TakeOwn(s)); }
-Taken Onboard::Take(const estimation::OwnPositionFix& s) { return Counted(it_->senses.TakeOwn(s)); }
-Taken Onboard::Take(const estimation::OwnVelocityFix& s) { return Counted(it_->senses.TakeOwn(s)); }
-Taken Onboard::Take(const estimation::HeightSample& s) { return Counted(it_->senses.TakeOwn(s)); }
-Taken Onboard::Take(const estimation::HeadingSample& s) { return Counted(it_->senses.TakeOwn(s)); }
-Taken Onboard::Take(const estimation::PadGpsFix& s) { return Counted(it_->senses.Take(s)); }
-Taken Onboard::Take(const estimation::PadSighting& s) { return Counted(it_->senses.Take(s)); }
-Taken Onboard::Take(const estimation::PadImage& s) { return Counted(it_->senses.Take(s)); }
-Taken Onboard::Take(const estimation::DepthImage& s) { return Counted(it_->senses.Take(s)); }
+template <typename Measurement>
+Measurement Onboard::InFlight(Measurement measured) const {
+  measured.t = FlightTime(measured.t);
+  return measured;
+}
 
-Taken Onboard::Take(const estimation::FootForce& force) { return Counted(it_->TakeForce(force)); }
+Taken Onboard::Take(const estimation::VehicleState& s) {
+  return Counted(it_->senses.TakeOwn(InFlight(s)));
+}
+Taken Onboard::Take(const estimation::ImuSample& s) {
+  return Counted(it_->senses.TakeOwn(InFlight(s)));
+}
+Taken Onboard::Take(const estimation::OwnPositionFix& s) {
+  return Counted(it_->senses.TakeOwn(InFlight(s)));
+}
+Taken Onboard::Take(const estimation::OwnVelocityFix& s) {
+  return Counted(it_->senses.TakeOwn(InFlight(s)));
+}
+Taken Onboard::Take(const estimation::HeightSample& s) {
+  return Counted(it_->senses.TakeOwn(InFlight(s)));
+}
+Taken Onboard::Take(const estimation::HeadingSample& s) {
+  return Counted(it_->senses.TakeOwn(InFlight(s)));
+}
+Taken Onboard::Take(const estimation::PadGpsFix& s) {
+  return Counted(it_->senses.Take(InFlight(s)));
+}
+Taken Onboard::Take(const estimation::PadSighting& s) {
+  return Counted(it_->senses.Take(InFlight(s)));
+}
+Taken Onboard::Take(const estimation::PadImage& s) {
+  return Counted(it_->senses.Take(s, FlightTime(s.t)));
+}
+Taken Onboard::Take(const estimation::DepthImage& s) {
+  return Counted(it_->senses.Take(s, FlightTime(s.t)));
+}
+Taken Onboard::Take(const estimation::FootForce& s) { return Counted(it_->TakeForce(InFlight(s))); }
 
 const std::array<int, kTakenKinds>& Onboard::taken() const { return it_->taken; }
+const std::array<int, kStepTimes>& Onboard::steps() const { return it_->steps; }
+double Onboard::FlightTime(double t) const { return it_->clock.At(t); }
 
 void Onboard::Begin(double t, const estimation::Commands& thrusts) {
   if (it_->pilot) throw std::invalid_argument("Onboard::Begin: the flight has begun");
@@ -199,19 +249,25 @@ void Onboard::Begin(double t, const estimation::Commands& thrusts) {
   }
   it_->senses.Begin();
   it_->pilot.emplace(it_->options, it_->parts, it_->senses.own().now(), thrusts, it_->senses.map());
+  it_->clock.Begin(t);
+  it_->Command(it_->pilot->Level(t));
+  it_->setpoint.thrusts = thrusts;
+  it_->StampSetpoint(t);
 }
 
-const Setpoint& Onboard::Step(double t) {
-  const bool is_time = IsTime(t);
-  if (!it_->pilot || !is_time || (it_->stepped && t <= *it_->stepped)) return it_->setpoint;
-  it_->stepped = t;
+const Setpoint& Onboard::Step(double callers_t) {
+  if (!it_->pilot) return it_->setpoint;
+  it_->Judge(callers_t);
+  if (!IsFlown(it_->status.time)) return it_->setpoint;
+  const double t = it_->clock.At(callers_t);
   it_->senses.Advance(t);
   AddThreadCpu(&it_->times.control, [&] {
     it_->status.mission_step = it_->mission_clock.Due(t);
     if (it_->status.mission_step) it_->Mission(t);
   });
   it_->Plan(t);
-  AddThreadCpu(&it_->times.control, [&] { it_->Control(t); });
+  AddThreadCpu(&it_->times.control, [&] { it_->Command(it_->pilot->Control(it_->senses.own())); });
+  it_->StampSetpoint(callers_t);
   it_->Report(t);
   return it_->setpoint;
 }
@@ -221,14 +277,16 @@ const OnboardPlan& Onboard::plan() const { return it_->plan; }
 const OnboardTimes& Onboard::times() const { return it_->times; }
 
 planning::FlatState Onboard::Reference(double t) const {
-  return it_->pilot ? it_->pilot->Reference(t) : planning::FlatState{};
+  return it_->pilot ? it_->pilot->Reference(FlightTime(t)) : planning::FlatState{};
 }
 Disturbance Onboard::disturbance() const {
   return it_->pilot ? it_->pilot->disturbance() : Disturbance{};
 }
 
 const estimation::VehicleState& Onboard::own() const { return it_->senses.own().now(); }
-estimation::VehicleState Onboard::OwnAt(double t) const { return it_->senses.own().At(t); }
+estimation::VehicleState Onboard::OwnAt(double t) const {
+  return it_->senses.own().At(FlightTime(t));
+}
 bool Onboard::own_estimated() const { return it_->senses.own().estimated(); }
 const estimation::PadFilter& Onboard::pad() const { return it_->senses.pad(); }
 const planning::OccupancyMap& Onboard::map() const { return it_->senses.map(); }

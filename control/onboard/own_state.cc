@@ -15,16 +15,15 @@ namespace {
 using estimation::OwnUpdate;
 using estimation::VehicleState;
 
-constexpr double kDensest = 1000.0;    // given states are kept [Hz]
-constexpr double kStateTimeout = 0.1;  // a given state is good for so long without a newer one [s]
-constexpr double kAhead = 0.1;         // of the time that was advanced to: no measurement is [s]
+constexpr double kDensest = 1000.0;  // given states are kept [Hz]
+constexpr double kAhead = 0.1;       // of the time that was advanced to: no measurement is [s]
 
 constexpr double kLargest = 1e10;  // [m], [m/s], [rad/s]: no simulator goes on beyond it
 
 // Written so that NaN fails each.
 bool IsPossible(const VehicleState& s) {
   const auto within = [](const Eigen::Vector3d& a) { return (a.array().abs() < kLargest).all(); };
-  return IsTime(s.t) && within(s.p_WB) && within(s.v_WB) && within(s.w_WB_B) &&
+  return IsFlightTime(s.t) && within(s.p_WB) && within(s.v_WB) && within(s.w_WB_B) &&
          std::abs(s.q_WB.norm() - 1.0) < 1e-3;
 }
 
@@ -134,6 +133,8 @@ VehicleState OwnState::Newest() const {
   return state;
 }
 
+void OwnState::Forget() { size_ = 0; }
+
 void OwnState::Advance(double t) {
   advanced_ = t;
   if (filter_) {
@@ -160,7 +161,7 @@ VehicleState OwnState::At(double t) const {
   }
   if (size_ == 0) return now_;
   const VehicleState& from = LatestAt(t);
-  return CarriedTo(std::clamp(t, from.t, from.t + kStateTimeout), from);
+  return CarriedTo(std::clamp(t, from.t, from.t + kCounts), from);
 }
 
 bool OwnState::Reaches(double t) const {
@@ -175,8 +176,8 @@ estimation::OwnStatus OwnState::Status(double t) const {
     return ahead ? estimation::OwnStatus::kImuStale : filter_->Status(t + ahead_);
   }
   if (size_ == 0) return estimation::OwnStatus::kAligning;
-  return std::abs(t - LatestAt(t).t) <= kStateTimeout ? estimation::OwnStatus::kGood
-                                                      : estimation::OwnStatus::kImuStale;
+  return std::abs(t - LatestAt(t).t) <= kCounts ? estimation::OwnStatus::kGood
+                                                : estimation::OwnStatus::kImuStale;
 }
 
 double OwnState::HorizontalSigma() const {

@@ -34,6 +34,8 @@ class OwnState {
   /// Brings now() to the time t [s]. Given states that are later, by more than a moment, are
   /// forgotten: before the first call the time was not known.
   void Advance(double t);
+  /// Given states are forgotten: some may be of a wrong time. Estimated ones depend on more than their times.
+  void Forget();
   /// The state by the newest measurement, or at the time of Advance if that is later.
   const estimation::VehicleState& now() const { return now_; }
 

@@ -41,6 +41,7 @@ constexpr double kLevelTimeInPull = 0.2;  // more level time in wind [s per m/s^
 constexpr double kSofterInPull = 0.05;    // contact in wind: 0.2 m/s from 7 m/s on [m/s per m/s^2]
 constexpr double kMeasuredMargin = 1.2;   // a measured latency is flown with this factor
 constexpr double kAttitudeLag = 0.1;      // of the vehicle behind its plans [s]
+const double kReferenceLost = planning::ReplannerOptions().odometry_threshold;  // beyond it [m]
 constexpr double kTurning = 0.8;  // and then it takes so long to turn away from the deck [s]
 
 std::optional<estimation::PadKnowledge> KnowledgeOf(const OnboardOptions& options,
@@ -106,7 +107,8 @@ void Pilot::StepMission(const OwnState& own, const estimation::PadFilter& filter
     recent_error_ = {};
     meets_vehicle_at_.reset();
   }
-  recent_error_.Note(t, (parts_.planner->Reference(t).p_WB - vehicle.p_WB).norm());
+  const double error = (parts_.planner->Reference(t).p_WB - vehicle.p_WB).norm();
+  if (!resumes_ || error <= kReferenceLost) recent_error_.Note(t, error);
   MissionInputs inputs;
   inputs.t = t;
   inputs.pad_available = KnowsTarget(filter);
@@ -193,6 +195,7 @@ const planning::ReplanResult* Pilot::Replan(const estimation::VehicleState& vehi
   const planning::ReplanResult& result = Ask(wants_plan, filter, map);
   idle_ = result.idle;
   if (idle_) return nullptr;
+  resumes_ = false;
   look_W_ = result.unseen_W;
   way_ = &result.curve;
   if (result.from_odometry) meets_vehicle_at_ = input.t_start;
@@ -297,6 +300,16 @@ PilotCommand Pilot::Control(const OwnState& own) {
   mix = mixer_.Mix(command.law.wrench);
   if (lead_) mix.thrusts = lead_->Command(mix.thrusts, t);
   if (observer_) observer_->Command(mix.thrusts);
+  return command;
+}
+
+PilotCommand Pilot::Level(double t) const {
+  PilotCommand command;
+  command.reference = Reference(t);
+  command.mix.thrusts.setZero(mixer_.min().size());
+  if (!mission_.motors_armed) return command;
+  command.law = Blind(t, command.reference);
+  command.mix = mixer_.Mix(command.law.wrench);
   return command;
 }
 

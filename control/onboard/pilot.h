@@ -50,6 +50,10 @@ class Pilot {
   void StepMission(const OwnState& own, const estimation::PadFilter& filter, double depth_age,
                    double foot_force, double dt);
 
+  /// Time has passed in which nothing was flown. How far off a reference is that was lost meanwhile says nothing of the
+  /// tracking: the next plan begins at the vehicle.
+  void Resume() { resumes_ = true; }
+
   /// One replanning step while flying, to the pad or to rest as the mission wants. nullptr while
   /// hovering or disarmed, and where the planner had nothing to do. Call at replan_rate, or at
   /// close_rate where it `plans_often`. The planner owns the result until the next.
@@ -59,6 +63,8 @@ class Pilot {
 
   /// What is commanded in this control step. Once per step: the disturbance is estimated from it.
   PilotCommand Control(const OwnState& own);
+  /// What is flown at time t without knowing how the vehicle is: level, hover thrust, no moment.
+  PilotCommand Level(double t) const;
 
   /// What the tracking law compensates; nothing where it is not estimated.
   Disturbance disturbance() const;
@@ -133,6 +139,7 @@ class Pilot {
   bool lands_ = false;                             // what is flown ends in contact
   double own_position_sigma_ = 0.0, own_attitude_sigma_ = 0.0;
   planning::RecentError recent_error_;      // of tracking
+  bool resumes_ = false;                    ///< until the next plan
   std::optional<double> meets_vehicle_at_;  // the reference does, that of a plan from the vehicle
   bool last_planned_ = false;          ///< the last replanning step left no plan to be wished for
   std::optional<double> planned_t_;    ///< when the last new plan was made

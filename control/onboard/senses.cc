@@ -59,7 +59,7 @@ void Senses::Begin() {
 }
 
 bool Senses::IsAhead(double t) const {
-  return !IsTime(t) || (own_.known() && t > own_.now().t + kMaxClockLead);
+  return !IsFlightTime(t) || (own_.known() && t > own_.now().t + kMaxClockLead);
 }
 
 std::optional<Taken> Senses::Refused(double t, const Stamps& used) const {
@@ -95,21 +95,23 @@ Taken Senses::Take(const estimation::PadSighting& sighting) {
   return taken;
 }
 
-Taken Senses::Take(const estimation::PadImage& image) {
+Taken Senses::Take(const estimation::PadImage& image, double stamp) {
   if (!estimation::IsPossible(image)) return Taken::kInvalid;
-  if (const auto refused = Refused(image.t, pad_images_)) return *refused;
-  pad_images_.Add(image.t);
-  const auto sighting = look_.Find(image, own_.At(image.t), pad_);
-  return sighting ? Take(*sighting) : Taken::kEmpty;
+  if (const auto refused = Refused(stamp, pad_images_)) return *refused;
+  pad_images_.Add(stamp);
+  auto sighting = look_.Find(image, own_.At(stamp), pad_);
+  if (!sighting) return Taken::kEmpty;
+  sighting->t = stamp;
+  return Take(*sighting);
 }
 
-Taken Senses::Take(const estimation::DepthImage& image) {
+Taken Senses::Take(const estimation::DepthImage& image, double stamp) {
   if (!estimation::IsPossible(image)) return Taken::kInvalid;
-  if (const auto refused = Refused(image.t, images_)) return *refused;
+  if (const auto refused = Refused(stamp, images_)) return *refused;
   if (!estimation::SaysSomething(image)) return Taken::kEmpty;
-  const estimation::VehicleState from = own_.At(image.t);
+  const estimation::VehicleState from = own_.At(stamp);
   const Eigen::Matrix3d R_WB = from.q_WB.toRotationMatrix();
-  frame_.t = image.t;
+  frame_.t = stamp;
   frame_.intrinsics = image.intrinsics;
   frame_.max_range = image.max_range;
   frame_.R_WC = R_WB * image.R_BC;
@@ -118,13 +120,13 @@ Taken Senses::Take(const estimation::DepthImage& image) {
   frame_.depth = image.depth;
   const double t = own_.now().t;
   memory_.Recentre(own_.now().p_WB, &map_);
-  map_.Integrate(frame_, Outline(t, image.t));
+  map_.Integrate(frame_, Outline(t, stamp));
   const planning::PadOutline now = Outline(t, t);
   if (pad_.initialized() && now.Known()) {
     map_.ExplainDoubts([&](double at) { return Outline(t, at); });
   }
-  images_.Add(image.t);
-  depth_t_ = std::max(depth_t_, image.t);
+  images_.Add(stamp);
+  depth_t_ = std::max(depth_t_, stamp);
   return Taken::kUsed;
 }
 

@@ -31,8 +31,9 @@ class Senses {
   }
   Taken Take(const estimation::PadGpsFix& fix);
   Taken Take(const estimation::PadSighting& sighting);
-  Taken Take(const estimation::PadImage& image);
-  Taken Take(const estimation::DepthImage& image);
+  /// Images are of the time `stamp` [s], whatever their own says.
+  Taken Take(const estimation::PadImage& image, double stamp);
+  Taken Take(const estimation::DepthImage& image, double stamp);
 
   /// The time stamp is ahead of all known times, or not a number.
   bool IsAhead(double t) const;
@@ -40,6 +41,7 @@ class Senses {
   /// The flight begins here: the space around the vehicle is free.
   void Begin();
   void Advance(double t) { own_.Advance(t); }
+  void Forget() { own_.Forget(); }
 
   /// Since the stamp of the last depth image, or since Begin if none has come [s].
   double DepthAge(double t) const { return std::max(0.0, t - depth_t_); }

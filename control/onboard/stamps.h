@@ -9,6 +9,10 @@ namespace touchdown::control {
 
 inline constexpr double kLatestTime = 1e10;  ///< the clock of 1970 is far below [s]
 constexpr bool IsTime(double t) { return t >= 0.0 && t <= kLatestTime; }
+/// The flight's own may be later than all clocks (flight_clock.h).
+constexpr bool IsFlightTime(double t) { return t >= 0.0 && t <= 2.0 * kLatestTime; }
+/// A given own state, a foot force and a set-point count for so long without a newer one [s].
+inline constexpr double kCounts = 0.1;
 
 /// The newest time stamps of one sensor that were checked: a ring. Does not allocate.
 class Stamps {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Landings in the toy world whose measurements come late, twice, in another order, or not at all.
+// Landings in the toy world whose measurements come late, twice, in another order, or not at all, and by clocks that
+// do not go on as they should.
 #include <functional>
 #include <map>
 #include <random>
@@ -27,6 +28,12 @@ struct Mess {
   bool estimated =
       false;  ///< the own state, from an IMU whose samples come in time and sensors that are late
   bool autopilot = false;  ///< holds the attitude, which it knows
+  double leap = 0.0;       ///< the clock shows so much more ... [s]
+  double leap_at = 4.0;    ///< ... from then on [s]
+  double stall = 0.0;      ///< from then on nothing is taken and no step is made for so long [s]
+  double bad_steps = 0.0;  ///< share of the steps before which one more is made, at a wrong time
+
+  double Clock(double t) const { return t < leap_at ? t : t + leap; }
 };
 constexpr Mess kMess = {0.15, 0.01, 0.2, 0.1};
 
@@ -39,8 +46,10 @@ class Post {
   void Send(double t, const Measurement& measurement, double longest) {
     if (Draw() < mess_.lost) return;
     const int copies = Draw() < mess_.doubled ? 2 : 1;
+    Measurement stamped = measurement;
+    stamped.t = mess_.Clock(measurement.t);
     for (int i = 0; i < copies; ++i) {
-      held_.emplace(t + longest * Draw(), [measurement](Onboard* to) { to->Take(measurement); });
+      held_.emplace(t + longest * Draw(), [stamped](Onboard* to) { to->Take(stamped); });
     }
   }
 
@@ -65,7 +74,9 @@ struct Landing {
   double off = 0.0;           ///< from the middle of the pad, at the end [m]
   double nearest_wall = 1e9;  ///< of the vehicle's axis [m]
   double meets = 0.0;         ///< vertical speed at first contact [m/s]
+  bool proven = true;         ///< all that was committed
   std::array<int, kTakenKinds> taken{};
+  std::array<int, kStepTimes> steps{};
   std::string mode;
 };
 
@@ -74,7 +85,7 @@ double DistanceTo(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& p) {
 }
 
 /// An autopilot with its own attitude that follows thrust and attitude: 20 rad/s, well damped.
-estimation::Commands Autopilot(const Setpoint& setpoint, const ToyWorld& world) {
+estimation::Commands Followed(const Setpoint& setpoint, const ToyWorld& world) {
   const estimation::VehicleState& is = world.vehicle;
   const Eigen::Quaterniond off(is.q_WB.toRotationMatrix().transpose() * setpoint.R_WB);
   const Eigen::Vector3d spin_up =
@@ -82,6 +93,17 @@ estimation::Commands Autopilot(const Setpoint& setpoint, const ToyWorld& world) 
   return Mixer(world.model)
       .Mix({setpoint.wrench.thrust, world.model.inertia.cwiseProduct(spin_up)})
       .thrusts;
+}
+
+/// ... and that brakes by its own means where the set-point does not count any more.
+estimation::Commands Autopilot(const Setpoint& setpoint, const ToyWorld& world, double now) {
+  if (setpoint.CountsAt(now)) return Followed(setpoint, world);
+  const Eigen::Vector3d& v = world.vehicle.v_WB;
+  const Eigen::Vector3d up(-0.1 * v.x(), -0.1 * v.y(), 1.0);
+  Setpoint rest;
+  rest.R_WB = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), up);
+  rest.wrench.thrust = world.model.HoverThrust() * (1.0 - 0.3 * std::clamp(v.z(), -1.0, 1.0));
+  return Followed(rest, world);
 }
 
 /// A hover for two seconds before the flight begins.
@@ -121,11 +143,18 @@ Landing Fly(std::uint64_t seed, const Mess& mess) {
   onboard.Begin(world.vehicle.t, world.thrusts);
   Landing landing;
   bool met = false;
+  Setpoint setpoint;
   for (int k = 0; k < 20000; ++k) {
-    const double t = world.vehicle.t;
+    const double t = world.vehicle.t, now = mess.Clock(t);
+    if (t >= mess.leap_at && t < mess.leap_at + mess.stall) {
+      world.Step(Autopilot(setpoint, world, now));
+      continue;
+    }
     const bool blind = t > 2.0 && std::fmod(t - 2.0, mess.blind_every) < mess.blind;
     if (mess.estimated) {
-      onboard.Take(world.Imu());
+      estimation::ImuSample sample = world.Imu();
+      sample.t = mess.Clock(sample.t);
+      onboard.Take(sample);
       if (k % 50 == 0) post.Send(t, world.Gps(), mess.delay);
       if (k % 20 == 0) post.Send(t, world.Height(), mess.delay);
       if (k % 10 == 0) post.Send(t, world.Compass(), mess.delay);
@@ -137,7 +166,13 @@ Landing Fly(std::uint64_t seed, const Mess& mess) {
     if (k % 50 == 0) post.Send(t, world.Depth(), mess.delay);
     if (k % 25 == 0 && world.SeesTags()) post.Send(t, world.Sighting(), mess.delay);
     post.Deliver(t, &onboard);
-    const Setpoint& setpoint = onboard.Step(t);
+    if (mess.bad_steps > 0.0 && draws.Draw() < mess.bad_steps) {
+      const double wrong[] = {std::nan(""), -1.0, 0.5 * t, t + draws.Draw(1.0, 4e9), t + 5.0};
+      onboard.Step(wrong[k % 5]);
+    }
+    setpoint = onboard.Step(now);
+    const planning::ReplanResult* answer = onboard.plan().answer;
+    landing.proven &= answer == nullptr || !answer->committed || answer->proven;
     landing.nearest_wall =
         std::min(landing.nearest_wall, DistanceTo(world.wall, world.vehicle.p_WB));
     if (!met && world.foot_force > 0.0) landing.meets = world.vehicle.v_WB.z();
@@ -146,10 +181,11 @@ Landing Fly(std::uint64_t seed, const Mess& mess) {
       landing.landed = true;
       break;
     }
-    world.Step(mess.autopilot ? Autopilot(setpoint, world) : setpoint.thrusts);
+    world.Step(mess.autopilot ? Autopilot(setpoint, world, now) : setpoint.thrusts);
   }
   landing.off = (world.vehicle.p_WB - world.Pad()).head<2>().norm();
   landing.taken = onboard.taken();
+  landing.steps = onboard.steps();
   landing.mode = ToString(onboard.status().mission.mode);
   return landing;
 }
@@ -202,6 +238,134 @@ TEST(OnboardFlights, LandThoughTheOwnStateIsAwayForAWhile) {
       ExpectLanded(Fly(seed, mess),
                    std::to_string(mess.blind) + " s, seed " + std::to_string(seed));
     }
+  }
+}
+
+// A clock that is set, forth by years or back, is another one: the flight goes on. So it does with an estimated state.
+TEST(OnboardFlights, LandThoughTheClockIsSet) {
+  for (const double leap : {1.7e9, 20.0, -0.3, -3.99}) {
+    for (const bool estimated : {false, true}) {
+      Mess mess;
+      mess.leap = leap;
+      mess.estimated = estimated;
+      for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+        const Landing landing = Fly(seed, mess);
+        const std::string what = std::to_string(leap) + " s, seed " + std::to_string(seed);
+        ExpectGood(landing, what + (estimated ? ", estimated" : ""));
+        EXPECT_TRUE(landing.proven) << what;
+        EXPECT_EQ(landing.steps[static_cast<int>(StepTime::kResumed)], 1) << what;
+      }
+    }
+  }
+}
+
+// The time passes, whether the process stalls or the clock only says so. An autopilot flies meanwhile.
+TEST(OnboardFlights, LandThoughTheProcessStalls) {
+  for (const double seconds : {0.2, 1.0, 5.0}) {
+    for (const bool truly : {true, false}) {
+      Mess mess;
+      mess.autopilot = true;
+      (truly ? mess.stall : mess.leap) = seconds;
+      for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+        const Landing landing = Fly(seed, mess);
+        const std::string what = std::to_string(seconds) + " s, seed " + std::to_string(seed);
+        ExpectLanded(landing, what + (truly ? "" : ", by the clock only"));
+        // A climb from a deck that was missed may be unproven (docs/safety.md), as after a landing in the wrong time.
+        EXPECT_TRUE(landing.proven || !truly) << what;
+        EXPECT_EQ(landing.steps[static_cast<int>(StepTime::kResumed)], 1) << what;
+      }
+    }
+  }
+}
+
+TEST(OnboardFlights, StepsOfWrongTimesChangeNoBit) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    Mess mess;
+    mess.bad_steps = 0.1;
+    const Landing with = Fly(seed, mess), without = Fly(seed, {});
+    EXPECT_EQ(with.off, without.off) << seed;
+    EXPECT_EQ(with.nearest_wall, without.nearest_wall) << seed;
+    EXPECT_GT(with.steps[static_cast<int>(StepTime::kLeap)], 50);
+    EXPECT_EQ(with.steps[static_cast<int>(StepTime::kGood)],
+              without.steps[static_cast<int>(StepTime::kGood)]);
+  }
+}
+
+/// A clock that stands, leaps, starts anew, or shows anything, from 1970 to 2100.
+class WildClock {
+ public:
+  explicit WildClock(std::uint64_t seed) : draws_({}, seed) {}
+
+  double At(double t) {
+    if (draws_.Draw() < 0.001)
+      offset_ = draws_.Draw() < 0.5 ? draws_.Draw(-20.0, 20.0) : draws_.Draw(0.0, 4.1e9);
+    if (draws_.Draw() < 0.001) disorder_ = draws_.Draw() < 0.5 ? 0.0 : draws_.Draw();
+    if (draws_.Draw() > disorder_) return last_ = t + offset_;
+    const double wrong[] = {last_, std::nan(""), t, draws_.Draw(-1.0, 4.1e9),
+                            last_ + draws_.Draw(-0.3, 0.3)};
+    return wrong[static_cast<int>(5.0 * draws_.Draw())];
+  }
+  double Draw() { return draws_.Draw(); }
+
+ private:
+  Post draws_;
+  double offset_ = 0.0, disorder_ = 0.0, last_ = 0.0;
+};
+
+// An autopilot flies, whatever the set-points are worth. Those may be copies for 0.1 s, then they are level.
+TEST(OnboardFlights, NoClockFreezesThemOrLeadsThemAstray) {
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    ToyWorld world;
+    world.vehicle.p_WB = {0.0, 0.0, 2.0};
+    const OnboardOptions options = LandingOptions(world.model, ToyWorld::kDeck);
+    Onboard onboard(options, LandingParts(options));
+    onboard.Take(world.vehicle);
+    onboard.Begin(world.vehicle.t, world.thrusts);
+    WildClock clock(seed);
+    Setpoint last;
+    long allocated = 0;
+    int same = 0, longest = 0, committed = 0;
+    for (int k = 0; k < 20000 && onboard.status().mission.motors_armed; ++k) {
+      const auto stamped = [&](auto measured) {
+        measured.t = clock.At(measured.t);
+        return measured;
+      };
+      const auto state = stamped(world.vehicle);
+      const auto force = stamped(estimation::FootForce{world.vehicle.t, world.foot_force});
+      const auto fix = stamped(world.PadGps());
+      const auto sighting = stamped(world.Sighting());
+      const auto image = stamped(k % 50 == 0 ? world.Depth() : estimation::DepthImage{});
+      const double now = clock.At(world.vehicle.t);
+      const long before = solvers::AllocationCount();
+      onboard.Take(state);
+      onboard.Take(force);
+      if (k % 50 == 0) onboard.Take(fix);
+      if (k % 50 == 0) onboard.Take(image);
+      if (k % 25 == 0 && world.SeesTags()) onboard.Take(sighting);
+      const Setpoint& setpoint = onboard.Step(now);
+      const bool plans = onboard.plan().answer != nullptr;  // a longer one makes its room
+      if (k > 1000 && !plans) allocated += solvers::AllocationCount() - before;
+      ASSERT_TRUE(setpoint.thrusts.allFinite() && setpoint.R_WB.allFinite() &&
+                  std::isfinite(setpoint.wrench.thrust) && setpoint.wrench.moment_B.allFinite() &&
+                  setpoint.reference.p_WB.allFinite() && setpoint.reference.v_WB.allFinite() &&
+                  std::isfinite(setpoint.reference.yaw) && std::isfinite(setpoint.valid_until));
+      const planning::ReplanResult* answer = onboard.plan().answer;
+      if (answer != nullptr && answer->committed) {
+        ++committed;
+        const MissionMode mode = onboard.status().mission.mode;
+        const bool at_deck = mode == MissionMode::kLanding || mode == MissionMode::kGoAround;
+        EXPECT_TRUE(answer->proven || at_deck) << seed << ", " << k;  // docs/safety.md says when
+      }
+      const bool level = setpoint.wrench.moment_B.isZero() && setpoint.R_WB.col(2).z() == 1.0;
+      same = !level && setpoint.thrusts == last.thrusts && setpoint.t == last.t ? same + 1 : 0;
+      longest = std::max(longest, same);
+      last = setpoint;
+      world.Step(Autopilot(setpoint, world, now));
+    }
+    EXPECT_LE(longest, 49) << seed;
+    EXPECT_GT(committed, 10) << seed;
+    EXPECT_GT(onboard.steps()[static_cast<int>(StepTime::kResumed)], 10) << seed;
+    EXPECT_TRUE(allocated == 0 || solvers::AllocationCount() < 0) << seed << ": " << allocated;
   }
 }
 

@@ -9,10 +9,12 @@
 #include <set>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "control/onboard/own_state.h"
 #include "control/test/toy_world.h"
 #include "touchdown/control/onboard/envelope.h"
 
@@ -279,11 +281,102 @@ TEST(Onboard, AForceIsForgotten) {
   EXPECT_EQ(pressed(0.25), 0.0);
 }
 
-TEST(Onboard, AStepsTimeIsATime) {
+TEST(Onboard, AStepOfAnotherTimeIsRefusedAndNamed) {
+  const std::pair<double, StepTime> times[] = {
+      {kNan, StepTime::kInvalid}, {-1.0, StepTime::kInvalid}, {1e300, StepTime::kInvalid},
+      {0.1, StepTime::kStands},   {0.05, StepTime::kBack},    {0.201, StepTime::kLeap},
+      {5.0, StepTime::kLeap},     {1.7e9, StepTime::kLeap}};
+  for (const auto& [wrong, judged] : times) {
+    Onboard onboard = Hovering(0.1);
+    const double good = onboard.Step(0.1).t;
+    EXPECT_EQ(onboard.Step(wrong).t, good) << wrong;
+    EXPECT_EQ(onboard.status().time, judged) << wrong;
+    EXPECT_FALSE(onboard.status().mission_step);
+    EXPECT_NE(onboard.Take(At(wrong)), Taken::kUsed) << wrong;
+    EXPECT_EQ(onboard.Take(At(0.102, {0.1, 0, 2})), Taken::kUsed);
+    EXPECT_EQ(onboard.Step(0.102).t, 0.102);
+    EXPECT_EQ(onboard.status().time, StepTime::kGood);
+    EXPECT_EQ(onboard.own().p_WB.x(), 0.1);
+    EXPECT_EQ(onboard.steps()[static_cast<std::size_t>(judged)], 1);
+  }
+}
+
+TEST(Onboard, ASetpointCountsForATenthOfASecond) {
   Onboard onboard = Hovering(0.1);
-  const double good = onboard.Step(0.1).t;
-  for (const double wrong : {kNan, -1.0, 1e300}) EXPECT_EQ(onboard.Step(wrong).t, good);
-  EXPECT_EQ(onboard.Step(0.102).t, 0.102);
+  const Setpoint& setpoint = onboard.Step(0.12);
+  EXPECT_EQ(setpoint.valid_until, 0.12 + 0.1);
+  EXPECT_TRUE(setpoint.CountsAt(0.21));
+  EXPECT_FALSE(setpoint.CountsAt(0.23));
+  EXPECT_FALSE(setpoint.CountsAt(kNan));
+  onboard.Step(9.0);
+  EXPECT_EQ(setpoint.valid_until, 0.12 + 0.1);
+}
+
+// No step has been taken yet, and the vehicle flies.
+TEST(Onboard, ARefusedFirstStepDoesNotStopTheRotors) {
+  Onboard onboard = Hovering(0.1);
+  const Setpoint& setpoint = onboard.Step(1.7e9);
+  EXPECT_TRUE(setpoint.armed);
+  EXPECT_EQ(setpoint.thrusts, Eigen::Vector4d::Constant(0.25 * ToyQuadrotor().HoverThrust()));
+  EXPECT_EQ(setpoint.reference.p_WB, Eigen::Vector3d(0.0, 0.0, 2.0));
+  EXPECT_EQ(setpoint.t, 0.1);
+}
+
+// Ten milliseconds of another time are a stall, and that time has passed.
+TEST(Onboard, AStallIsAnOutage) {
+  Onboard onboard = Hovering(0.1);
+  onboard.Step(0.1);
+  for (int k = 0; k < 4; ++k) EXPECT_EQ(onboard.Step(5.0 + 0.002 * k).t, 0.1) << k;
+  EXPECT_EQ(onboard.Take(At(5.006)), Taken::kInvalid);
+  EXPECT_EQ(onboard.Step(5.008).t, 5.008);
+  EXPECT_EQ(onboard.status().time, StepTime::kResumed);
+  EXPECT_FALSE(KnowsAttitude(onboard.status().own));
+  EXPECT_EQ(onboard.plan().asked, nullptr);
+  EXPECT_EQ(onboard.own().t, 5.008);
+  EXPECT_EQ(onboard.FlightTime(5.008), 5.008);
+  EXPECT_EQ(onboard.Take(At(5.01)), Taken::kUsed);
+  onboard.Step(5.01);
+  EXPECT_EQ(onboard.status().own, estimation::OwnStatus::kGood);
+  EXPECT_EQ(onboard.status().time, StepTime::kGood);
+}
+
+// No time has passed when the clock is another one.
+TEST(Onboard, AClockThatStartsAnewIsFollowed) {
+  for (const double anew : {0.0, 4.9, 1.7e9}) {
+    Onboard onboard = Made(Options());
+    onboard.Take(At(5.0));
+    onboard.Begin(5.0, Eigen::Vector4d::Constant(2.9));
+    onboard.Step(5.0);
+    for (int k = 0; k < 5; ++k) onboard.Step(anew + 0.002 * k);
+    EXPECT_EQ(onboard.status().time, StepTime::kResumed) << anew;
+    EXPECT_NEAR(onboard.FlightTime(anew + 0.008), 5.008, 1e-6) << anew;
+    EXPECT_NE(onboard.Take(At(5.01)), Taken::kUsed) << anew;
+    EXPECT_EQ(onboard.Take(At(anew + 0.01, {0.1, 0, 2})), Taken::kUsed) << anew;
+    EXPECT_EQ(onboard.Take(estimation::FootForce{anew + 0.01, 0.0}), Taken::kUsed) << anew;
+    EXPECT_EQ(onboard.Take(estimation::PadGpsFix{anew + 0.01, {4, 1}, 0.1}), Taken::kUsed) << anew;
+    const Setpoint& setpoint = onboard.Step(anew + 0.01);
+    EXPECT_EQ(setpoint.t, anew + 0.01);
+    EXPECT_EQ(setpoint.valid_until, anew + 0.01 + 0.1);
+    EXPECT_EQ(onboard.status().own, estimation::OwnStatus::kGood) << anew;
+    EXPECT_EQ(onboard.own().p_WB.x(), 0.1) << anew;
+    EXPECT_EQ(onboard.OwnAt(anew + 0.01).p_WB.x(), 0.1) << anew;
+  }
+}
+
+// A tilt asks for a moment. It must not go on for ever.
+TEST(Onboard, WithoutAnyTimeItLevelsOut) {
+  Onboard onboard = Hovering(0.1);
+  estimation::VehicleState tilted = At(0.12);
+  tilted.q_WB = Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitX());
+  onboard.Take(tilted);
+  const Setpoint& setpoint = onboard.Step(0.12);
+  for (int k = 0; k < 49; ++k) onboard.Step(k % 2 == 0 ? kNan : 1e3 * k);
+  EXPECT_GT(setpoint.wrench.moment_B.norm(), 0.1);
+  onboard.Step(kNan);
+  EXPECT_EQ(setpoint.wrench.moment_B.norm(), 0.0);
+  EXPECT_NEAR(setpoint.thrusts.sum(), ToyQuadrotor().HoverThrust(), 0.1);
+  EXPECT_TRUE(setpoint.armed);
+  EXPECT_EQ(setpoint.t, 0.12);
 }
 
 TEST(Onboard, WithoutAnImuNoMomentIsAsked) {
@@ -299,10 +392,10 @@ TEST(Onboard, WithoutAnImuNoMomentIsAsked) {
   onboard.Begin(1.2, Eigen::Vector4d::Constant(2.9));
   feed(1.202);
   EXPECT_GT(onboard.Step(1.202).wrench.moment_B.norm(), 0.0);
-  EXPECT_EQ(onboard.Step(1.5).wrench.moment_B.norm(), 0.0);
+  EXPECT_EQ(onboard.Step(1.3).wrench.moment_B.norm(), 0.0);
   EXPECT_EQ(onboard.status().own, estimation::OwnStatus::kImuStale);
-  feed(1.502);
-  onboard.Step(1.502);
+  feed(1.302);
+  onboard.Step(1.302);
   EXPECT_NE(onboard.status().own, estimation::OwnStatus::kImuStale);
 }
 
@@ -325,6 +418,7 @@ TEST(Onboard, WithoutAnAttitudeNoMomentIsAsked) {
   tilted.q_WB = Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitX());
   onboard.Take(tilted);
   EXPECT_GT(onboard.Step(0.12).wrench.moment_B.norm(), 0.1);
+  onboard.Step(0.2);
   const Setpoint& blind = onboard.Step(0.25);
   EXPECT_EQ(blind.wrench.moment_B.norm(), 0.0);
   EXPECT_NEAR(blind.wrench.thrust, ToyQuadrotor().HoverThrust(), 0.1);
@@ -531,6 +625,12 @@ TEST(Onboard, AForceIsOfItsTime) {
   EXPECT_EQ(onboard.Take(estimation::FootForce{0.05, 2.0}), Taken::kDoubled);
   EXPECT_EQ(onboard.Take(estimation::FootForce{0.04, 2.0}), Taken::kTooOld);
   EXPECT_EQ(onboard.Take(estimation::FootForce{0.06, kNan}), Taken::kInvalid);
+}
+
+TEST(StepTime, EveryOneHasItsName) {
+  std::set<std::string_view> names;
+  for (int i = 0; i < kStepTimes; ++i) names.insert(ToString(static_cast<StepTime>(i)));
+  EXPECT_EQ(names.size(), static_cast<std::size_t>(kStepTimes));
 }
 
 TEST(Taken, EveryOneHasItsName) {

@@ -56,10 +56,10 @@ class OwnOnboard {
 py::dict Status(OwnOnboard& self) {
   return self.See([](const Onboard& o) {
     const control::OnboardStatus& s = o.status();
-    return py::dict("mode"_a = s.mission.mode, "reason"_a = s.mission.reason,
-                    "gate"_a = s.mission.gate, "descent_hold"_a = s.mission.descent_hold,
-                    "mission_step"_a = s.mission_step, "own"_a = s.own,
-                    "foot_force"_a = s.foot_force, "pad_known"_a = s.pad_known,
+    return py::dict("time"_a = std::string(ToString(s.time)), "mode"_a = s.mission.mode,
+                    "reason"_a = s.mission.reason, "gate"_a = s.mission.gate,
+                    "descent_hold"_a = s.mission.descent_hold, "mission_step"_a = s.mission_step,
+                    "own"_a = s.own, "foot_force"_a = s.foot_force, "pad_known"_a = s.pad_known,
                     "pad_sure"_a = s.pad_sure, "plan_valid"_a = s.plan_valid);
   });
 }
@@ -159,7 +159,8 @@ void BindOnboard(py::module_& m) {
       .Field("ceiling", &Envelope::ceiling)
       .Done();
   py::class_<control::Setpoint>(m, "Setpoint", Doc("Setpoint"))
-      .def_readonly("t", &control::Setpoint::t, "[s]")
+      .def_readonly("t", &control::Setpoint::t, Doc("Setpoint::t"))
+      .def_readonly("valid_until", &control::Setpoint::valid_until, Doc("Setpoint::valid_until"))
       .def_readonly("armed", &control::Setpoint::armed, Doc("Setpoint::armed"))
       .def_property_readonly(
           "thrusts", [](const control::Setpoint& s) { return Eigen::VectorXd(s.thrusts); },
@@ -204,7 +205,7 @@ void BindOnboard(py::module_& m) {
           [](OwnOnboard& self, double t) {
             return self.See([&](const Onboard& o) -> std::optional<estimation::PadState> {
               if (!o.pad().initialized()) return std::nullopt;
-              return o.pad().Estimate(t);
+              return o.pad().Estimate(o.FlightTime(t));
             });
           },
           "t"_a, "What it takes for the pad's state at t [s]; None before it was measured.")

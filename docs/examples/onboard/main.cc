@@ -29,12 +29,16 @@ struct World {
   }
   Vector3d Pad() const { return Vector3d(6.0 + 0.5 * vehicle.t, 1.0, kDeck); }
 
-  // The autopilot is at the wanted attitude in 50 ms; feet stand on a spring.
+  // The autopilot is at the wanted attitude in 50 ms. Where the set-point does not count any more, it levels out and
+  // hovers. Feet stand on a spring.
   void Step(const control::Setpoint& setpoint) {
+    const bool counts = setpoint.CountsAt(vehicle.t);
     const Eigen::Quaterniond before = vehicle.q_WB;
-    vehicle.q_WB = before.slerp(kStep / 0.05, Eigen::Quaterniond(setpoint.R_WB));
+    const Eigen::Quaterniond wanted(counts ? setpoint.R_WB : Eigen::Matrix3d::Identity());
+    vehicle.q_WB = before.slerp(kStep / 0.05, wanted);
     vehicle.w_WB_B = 2.0 / kStep * (before.conjugate() * vehicle.q_WB).vec();
-    Vector3d force = vehicle.q_WB * Vector3d(0.0, 0.0, setpoint.wrench.thrust);
+    const double thrust = counts ? setpoint.wrench.thrust : model.HoverThrust();
+    Vector3d force = vehicle.q_WB * Vector3d(0.0, 0.0, thrust);
     const Vector3d p = vehicle.p_WB - Pad(), v = vehicle.v_WB - Vector3d(0.5, 0.0, 0.0);
     const bool stands = p.z() < model.foot_depth && p.head<2>().cwiseAbs().maxCoeff() < kHalf;
     foot_force = stands ? std::max(0.0, 2000.0 * (model.foot_depth - p.z()) - 60.0 * v.z()) : 0.0;
@@ -99,6 +103,9 @@ int main() {
     }
     const control::Setpoint& setpoint = onboard.Step(t);
     const control::OnboardStatus& status = onboard.status();
+    if (status.time != control::StepTime::kGood) {
+      std::printf("%5.2f s  step: %s\n", t, ToString(status.time).data());
+    }
     if (status.mission_step && status.mission.reason != control::TransitionReason::kNone) {
       std::printf("%5.2f s  %s (%s)\n", t, ToString(status.mission.mode).data(),
                   ToString(status.mission.reason).data());

@@ -11,6 +11,7 @@
 #include "touchdown/control/mission/landing_state_machine.h"
 #include "touchdown/control/onboard/onboard_options.h"
 #include "touchdown/control/onboard/replan_request.h"
+#include "touchdown/control/onboard/step_time.h"
 #include "touchdown/control/onboard/taken.h"
 #include "touchdown/control/tracking/controller.h"
 #include "touchdown/estimation/base/measurements.h"
@@ -23,19 +24,24 @@ namespace touchdown::control {
 
 /// What the vehicle is to do from now on, at three depths. A vehicle with an autopilot takes the middle or the last.
 struct Setpoint {
-  double t = 0.0;                ///< [s]
+  double t = 0.0;                ///< of the Step that made it [s]
+  double valid_until = 0.0;      ///< later nobody may fly it: what it answers is too long ago [s]
   bool armed = true;             ///< false: the rotors are to stand still
   estimation::Commands thrusts;  ///< of the actuators, in the model's order [N], of moments [N m]
   bool saturated = false;        ///< of those, one is at a limit
   Wrench wrench;                 ///< collective thrust and moment
   Eigen::Matrix3d R_WB = Eigen::Matrix3d::Identity();  ///< the attitude that the law wants
   planning::FlatState reference;                       ///< p, v, a, j, yaw of the committed plan
+
+  /// It may be flown now, by the caller's clock [s]. Else the vehicle levels out by its own means, with hover thrust.
+  bool CountsAt(double now) const { return now <= valid_until; }
 };
 
-/// How it stands at the end of the last Step.
+/// How it stands at the end of the last Step. If that was refused, all but its time is as before.
 struct OnboardStatus {
-  MissionOutputs mission;     ///< mode, and of the last step of the mission why it changed
-  bool mission_step = false;  ///< ... which was in the last Step
+  StepTime time = StepTime::kGood;  ///< what became of the last Step's time
+  MissionOutputs mission;           ///< mode, and of the last step of the mission why it changed
+  bool mission_step = false;        ///< ... which was in the last Step
   estimation::OwnStatus own = estimation::OwnStatus::kAligning;
   double foot_force = 0.0;  ///< as it counts: forgotten where no newer one comes [N]
   bool pad_known = false;   ///< it has been measured; a goal always is
@@ -59,6 +65,7 @@ struct OnboardTimes {
 
 /// A vehicle's own software: own state, pad filter, map, mission, planner, tracking law. It uses no clock except the
 /// time stamps, no file, no thread and no simulator. One instance per vehicle; the thread may change between calls.
+/// Times are those of the caller's clock. Only inside of own(), pad(), plan() and map() they are FlightTime.
 ///
 /// Take() whatever has come, in any order; Step() at the rate of the tracking law, 500 Hz by default of the laws'
 /// gains. The first state must be a hover: Begin() takes it over. The same calls give the same bits (except with
@@ -98,9 +105,15 @@ class Onboard {
   /// flight has begun, or if a time or thrust is out of range.
   void Begin(double t, const estimation::Commands& thrusts);
 
-  /// The set-point for the time t [s], which is later than all before; if it is not, or is not finite, the last one
-  /// again. Before Begin: the rotors stand still.
+  /// The set-point for the time t [s], later than that of the last step by at most 0.1 s. A step at another time is
+  /// refused: the last set-point again, after 50 in a row a level one. But the fifth of those that go on from each other
+  /// by at most 0.1 s is taken. If it is later by at most 10 s, that time has passed; else t is of another clock, and
+  /// none has passed. Given own states are forgotten then. Before Begin: the rotors stand still.
   const Setpoint& Step(double t);
+  /// How many steps were judged how, by StepTime.
+  const std::array<int, kStepTimes>& steps() const;
+  /// The flight's own time at the caller's time t [s]: the same, until the caller's clock is another one.
+  double FlightTime(double t) const;
 
   const OnboardStatus& status() const;
   const OnboardPlan& plan() const;
@@ -131,6 +144,8 @@ class Onboard {
  private:
   struct Parts;
   Taken Counted(Taken taken);
+  template <typename Measurement>
+  Measurement InFlight(Measurement measured) const;
   std::unique_ptr<Parts> it_;
 };
 
