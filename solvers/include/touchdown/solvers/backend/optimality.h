@@ -35,10 +35,11 @@ class OptimalityCheck {
   /// convex and quadratic. Infinite where the Lagrangian does not curve upwards. Does not allocate.
   double Above(const View& view, const Eigen::VectorXd& y, ViewEvaluation* storage);
 
-  /// Whether a step along the slopes of the rows, or a part of it, meets them better by half of
-  /// what they promise. Then a backend that says they cannot be met only gave up.
-  bool CanGetCloser(const View& view, const Eigen::VectorXd& y, const MustStop& must_stop,
-                    ViewEvaluation* storage);
+  /// Whether steps along the slopes of the rows (Gauss-Newton's, least squares of what they are
+  /// off) lead from y, or from beside it, to a point that meets them. Then a backend that says they
+  /// cannot be met only gave up. Does not allocate.
+  bool LeadsToFeasible(const View& view, const Eigen::VectorXd& y, const MustStop& must_stop,
+                       ViewEvaluation* storage);
 
  private:
   /// At which of its bounds a row is, by its multiplier's sign.
@@ -62,13 +63,14 @@ class OptimalityCheck {
   double Beyond(int row, double u) const;
   double Violation(int row, double u) const;
   double Violation(const std::vector<double>& u) const;
-  double TotalViolation(const std::vector<double>& u) const;
+  double SquaredViolation(const std::vector<double>& u) const;
   double WayTo(int row, double multiplier) const;
   Side SideOf(int row) const;
   bool EvaluateHessian(const double* multipliers, const double* weights, double cost_factor);
   void WeighRows(Kept kept);
   bool FactorRows();
   void StepOntoRows();
+  bool StepsCloser();
   void MoveAway(double share, const std::vector<double>& way);
   void Residual(const double* lambda);
   bool HoldRows();
@@ -91,6 +93,7 @@ class OptimalityCheck {
 
   const View* view_ = nullptr;
   const Eigen::VectorXd* y_ = nullptr;
+  Eigen::VectorXd foot_;  // of steps onto the rows
   const MustStop* must_stop_ = nullptr;
   ViewEvaluation* at_ = nullptr;
   int evaluations_ = 0;
