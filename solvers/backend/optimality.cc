@@ -30,7 +30,6 @@ constexpr double kLeastCurvature = 1e-8;  // of a cost's slope
 constexpr double kBoundRounding = 1e-12;
 constexpr double kLeastCost = 0.1;
 constexpr double kLastShift = 1e6;
-constexpr double kLookShiftGrowth = 10.0;
 // Steps onto the rows.
 constexpr double kBeside[] = {0.0, 1e-2, -2e-2};  // of the sizes: from where the last ones ended
 constexpr int kMostRowSteps = 40;                 // at a double root they halve the way
@@ -46,7 +45,9 @@ void OptimalityCheck::Prepare(const View& view) {
   shape.Resize(view.blocks(), view.block_size(), view.problem().half_bandwidth(),
                view.free_interval());
   factor_.Prepare(shape);
-  for (auto* vector : {&size_, &diagonal_, &gradient_, &residual_, &step_, &way_, &soft_, &near_}) {
+  across_.Prepare(shape);
+  for (auto* vector : {&size_, &diagonal_, &gradient_, &residual_, &step_, &way_, &soft_, &near_,
+                       &slope_, &sink_, &soft_share_}) {
     vector->assign(n, 0.0);
   }
   order_.assign(n, 0);
@@ -54,6 +55,8 @@ void OptimalityCheck::Prepare(const View& view) {
   ConstraintRows::Size(view, &by_term_);
   ConstraintRows::Size(view, &weights_by_term_);
   row_weights_.assign(by_term_.size(), {});
+  multipliers_.clear();
+  for (const std::vector<double>& of_term : by_term_) multipliers_.push_back(of_term.data());
   std::size_t rows = 0;
   for (const std::vector<double>& of_term : by_term_) rows += of_term.size();
   rows += n;
@@ -407,7 +410,7 @@ double OptimalityCheck::CostValue() const { return std::max(std::abs(cost_), kLe
 bool OptimalityCheck::FactorShifted() {
   MeasureDiagonal();
   double taken = 0.0;
-  for (double share = kFirstShift; share <= kLastShift; share *= kLookShiftGrowth) {
+  for (double share = kFirstShift; share <= kLastShift; share *= kShiftGrowth) {
     Shift(share - taken);
     taken = share;
     if (factor_.Factor(at_->hessian) != BorderedCholesky::Status::kDefinite) continue;

@@ -53,6 +53,7 @@ class OptimalityCheck {
     double outwards, farthest;
   };
   static constexpr double kFirstShift = 1e-15;  // rounding, share of the diagonal
+  static constexpr double kShiftGrowth = 10.0;
 
   bool Begin(const View& view, const Eigen::VectorXd& y, const MustStop& must_stop,
              ViewEvaluation* storage);
@@ -84,6 +85,11 @@ class OptimalityCheck {
   bool FactorRowsAtBounds();
   bool Refutes(const Reach& reach, Optimality* found);
   double Fall(double sign, const Reach& reach, double rise, double* where);
+  bool RisesBefore(double way, double rise);
+  bool FactorAcross();
+  double Sink(double away, double enough);
+  void AcrossStep();
+  void LagrangianSlope();
   bool EvaluateOnRows();
   double OffRow(int row) const;
   bool HoldPushing(double pushes);
@@ -106,15 +112,20 @@ class OptimalityCheck {
   double shift_ = 0.0;      // that made the Hessian definite, share of the diagonal
   ConstraintRows rows_;     // bounds among them
   BorderedCholesky factor_;
+  BorderedCholesky across_;  // of the Hessian, where walks look for the bottom of a valley
+  bool sinks_ = false;       // they do
+  double softness_ = 0.0;    // on its diagonal
   std::vector<double> size_;  // of each variable, 1 + |y_i|; what follows is in variables over it
   std::vector<double>
       diagonal_;  // what shifts are a share of: the largest in each row of a Hessian
   std::vector<double> gradient_, residual_, step_, way_, soft_, near_;
+  std::vector<double> slope_, sink_, soft_share_;
   std::vector<int> order_;
   std::vector<double> u_, u_near_, off_, jacobian_, norm_, lambda_, weight_;
   std::vector<Side> side_;
   std::vector<std::vector<double>> by_term_, weights_by_term_;
   std::vector<RowWeights> row_weights_;
+  std::vector<const double*> multipliers_;  // by_term_
 };
 
 }  // namespace touchdown::solvers
