@@ -48,7 +48,7 @@ void ConstraintRows::Set(const View& view, const ViewEvaluation& evaluation) {
     for (int k = 0; k < block.windows; ++k) {
       Window window{i, k, block.first_block[k], 0, {}};
       window.reduced_count = view.WindowBlocks(window.first_block, shape.window, window.reduced);
-      if (window.reduced_count == 0 && !view.free_interval()) {
+      if (IsConstant(view, window)) {
         for (int j = k * shape.outputs; j < (k + 1) * shape.outputs; ++j) {
           constant_violation_ =
               std::max({constant_violation_, bounds.lo - block.u[j], block.u[j] - bounds.hi});
@@ -75,6 +75,17 @@ void ConstraintRows::Set(const View& view, const ViewEvaluation& evaluation) {
     column_.push_back(i);
     start_.push_back(nonzeros());
   }
+}
+
+/// No variable that it reaches is free.
+bool ConstraintRows::IsConstant(const View& view, const Window& window) {
+  if (view.free_interval() && !view.fixed(view.num_variables() - 1)) return false;
+  for (int b = 0; b < window.reduced_count; ++b) {
+    for (int s = 0; s < view.block_size(); ++s) {
+      if (!view.fixed(window.reduced[b] * view.block_size() + s)) return false;
+    }
+  }
+  return true;
 }
 
 void ConstraintRows::Values(const ViewEvaluation& evaluation, double* u) const {

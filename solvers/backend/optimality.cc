@@ -30,8 +30,11 @@ constexpr double kLeastCurvature = 1e-8;  // of a cost's slope
 constexpr double kBoundRounding = 1e-12;
 constexpr double kLeastCost = 0.1;
 constexpr double kLastShift = 1e6;
-constexpr double kLookShiftGrowth = 10.0;
-constexpr double kReaches[] = {1.0, 0.1, 0.01};  // shares of a step onto the rows
+// Steps onto the rows.
+constexpr double kBeside[] = {0.0, 1e-2, -2e-2};  // of the sizes: from where the last ones ended
+constexpr int kMostRowSteps = 40;                 // at a double root they halve the way
+constexpr double kReaches[] = {1.0, 0.1, 0.01};  // shares of a step
+constexpr double kCloser = 0.1;                  // share of it by which the squares fall at least
 
 }  // namespace
 
@@ -42,13 +45,18 @@ void OptimalityCheck::Prepare(const View& view) {
   shape.Resize(view.blocks(), view.block_size(), view.problem().half_bandwidth(),
                view.free_interval());
   factor_.Prepare(shape);
-  for (auto* vector : {&size_, &diagonal_, &gradient_, &residual_, &step_, &way_, &soft_, &near_}) {
+  across_.Prepare(shape);
+  for (auto* vector : {&size_, &diagonal_, &gradient_, &residual_, &step_, &way_, &soft_, &near_,
+                       &slope_, &sink_, &soft_share_}) {
     vector->assign(n, 0.0);
   }
   order_.assign(n, 0);
+  foot_.resize(view.num_variables());
   ConstraintRows::Size(view, &by_term_);
   ConstraintRows::Size(view, &weights_by_term_);
   row_weights_.assign(by_term_.size(), {});
+  multipliers_.clear();
+  for (const std::vector<double>& of_term : by_term_) multipliers_.push_back(of_term.data());
   std::size_t rows = 0;
   for (const std::vector<double>& of_term : by_term_) rows += of_term.size();
   rows += n;
@@ -189,10 +197,10 @@ double OptimalityCheck::Violation(const std::vector<double>& u) const {
   return worst;
 }
 
-/// Of all of them: of rows that contradict each other it does not fall by sharing.
-double OptimalityCheck::TotalViolation(const std::vector<double>& u) const {
+/// Over all of them, the sum of squares.
+double OptimalityCheck::SquaredViolation(const std::vector<double>& u) const {
   double sum = rows_.constant_violation() > Optimality::kFeasible ? kInfinity : 0.0;
-  for (int r = 0; r < rows_.size(); ++r) sum += Violation(r, u[r]);
+  for (int r = 0; r < rows_.size(); ++r) sum += Violation(r, u[r]) * Violation(r, u[r]);
   return sum;
 }
 
@@ -237,14 +245,27 @@ void OptimalityCheck::StepOntoRows() {
   factor_.Solve(step_.data());
 }
 
-bool OptimalityCheck::CanGetCloser(const View& view, const Eigen::VectorXd& y,
-                                   const MustStop& must_stop, ViewEvaluation* storage) {
-  if (!Begin(view, y, must_stop, storage)) return false;
-  const double before = TotalViolation(u_);
-  if (!std::isfinite(before)) return false;
-  // The least squares of what rows are off, those at their bounds held.
+bool OptimalityCheck::LeadsToFeasible(const View& view, const Eigen::VectorXd& y,
+                                      const MustStop& must_stop, ViewEvaluation* storage) {
+  foot_ = y;
+  // Where slopes vanish no step leads on. Beside such a point they do not.
+  for (const double beside : kBeside) {
+    for (double& x : foot_) x += beside * (1.0 + std::abs(x));
+    view.MoveIntoBounds(foot_.data());
+    for (int i = 0; i < kMostRowSteps && Begin(view, foot_, must_stop, storage); ++i) {
+      if (Violation(u_) <= Optimality::kFeasible) return true;
+      if (!StepsCloser()) break;
+      std::copy(near_.begin(), near_.end(), foot_.data());
+    }
+  }
+  return false;
+}
+
+/// near_ = a step from y that meets the rows better, or a part of it.
+bool OptimalityCheck::StepsCloser() {
+  const double before = SquaredViolation(u_);
   WeighRows(Kept::kAtBounds);
-  if (!FactorRows()) return false;
+  if (!std::isfinite(before) || !FactorRows()) return false;
   for (int r = 0; r < rows_.size(); ++r) off_[r] = Beyond(r, u_[r]);
   StepOntoRows();
   for (const double reach : kReaches) {
@@ -252,7 +273,7 @@ bool OptimalityCheck::CanGetCloser(const View& view, const Eigen::VectorXd& y,
     view_->MoveIntoBounds(near_.data());
     if (!Evaluate(near_.data(), {}, {})) continue;
     rows_.Values(*at_, u_near_.data());
-    if (TotalViolation(u_near_) <= (1.0 - 0.5 * reach) * before) return true;
+    if (SquaredViolation(u_near_) <= (1.0 - kCloser * reach) * before) return true;
   }
   return false;
 }
@@ -389,7 +410,7 @@ double OptimalityCheck::CostValue() const { return std::max(std::abs(cost_), kLe
 bool OptimalityCheck::FactorShifted() {
   MeasureDiagonal();
   double taken = 0.0;
-  for (double share = kFirstShift; share <= kLastShift; share *= kLookShiftGrowth) {
+  for (double share = kFirstShift; share <= kLastShift; share *= kShiftGrowth) {
     Shift(share - taken);
     taken = share;
     if (factor_.Factor(at_->hessian) != BorderedCholesky::Status::kDefinite) continue;

@@ -3,10 +3,12 @@
 // along the softest directions, where the cost might fall, as long as it does not rise. A point
 // that costs clearly less refutes the optimum: a saddle, an inflection, a plateau, or a valley
 // whose metric is lost to rounding. Points behind a rise belong to another optimum, and refute
-// nothing.
+// nothing. Where a valley bends, no straight line stays on its floor: Newton's steps across the
+// line lead down to it (the reduction of Lyapunov and Schmidt).
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -36,12 +38,18 @@ constexpr double kUpwards = 1e-10;        // curvature, share of what holds rows
 constexpr double kPushes = 1e-6;          // multiplier of a row, share of slope and curvature
 constexpr int kSoftWays = 2;
 constexpr std::size_t kMostAxes = 8;
+// Valleys that bend.
+constexpr double kSoftest = 1e-15, kSoft = 2e-2;  // curvature of soft ways, share of the largest
+constexpr int kSinkSteps = 5;
+constexpr double kPromise = 10.0;  // they gain at most so many times what the first one promises
+constexpr double kBetween[] = {0.2, 0.4, 0.6, 0.8};
 
 }  // namespace
 
 /// Rows at a bound are left where they do not push, or held as well: of opposite ones none need
 /// push.
 void OptimalityCheck::LookAround(Optimality* found) {
+  sinks_ = false;
   if (shift_ > kFirstShift) {
     way_ = step_;
     if (FactorRowsAtBounds() && Refutes({kOutwards, kFarthest}, found)) return;
@@ -60,6 +68,7 @@ bool OptimalityCheck::RefuteSoftWays(Optimality* found) {
   for (int way = 0; way < kSoftWays; ++way) {
     if (way > 0 && !HoldRows()) return false;
     if (!SoftestWay(upwards ? Metric::kSizes : Metric::kDiagonal)) return false;
+    sinks_ = FactorAcross();
     if (!upwards && shift_ > kRoundingShift) reach.farthest = kFarthestDown;
     soft_ = way_;
     if (!FactorRowsAtBounds()) return false;
@@ -117,20 +126,88 @@ double OptimalityCheck::Fall(double sign, const Reach& reach, double rise, doubl
   for (double away = kNearest; away <= 1.01 * reach.farthest; away *= reach.outwards) {
     MoveAway(sign * away, way_);
     if (!EvaluateOnRows()) break;
-    const double fall = cost_ - at_->full.value;
+    const double fall = sinks_ ? Sink(away, rise) : cost_ - at_->full.value;
     if (fall < most - rise) break;
     if (fall <= most) continue;
+    if (sinks_ && fall > rise && RisesBefore(sign * away, rise)) break;
     most = fall;
     *where = away;
   }
   return most;
 }
 
+/// The floor of a valley may lead uphill before it comes down into another one.
+bool OptimalityCheck::RisesBefore(double way, double rise) {
+  return std::any_of(std::begin(kBetween), std::end(kBetween), [&](double share) {
+    MoveAway(share * way, way_);
+    return !EvaluateOnRows() || Sink(share * std::abs(way), -rise) < -rise;
+  });
+}
+
+/// Factors the Hessian of the softest way with softness_ on its diagonal. That is clearly more than
+/// what makes it definite: it tells soft ways from others.
+bool OptimalityCheck::FactorAcross() {
+  Shift(-shift_);
+  const double largest = Largest(diagonal_);
+  bool definite = false;
+  softness_ = 0.0;
+  for (double next = kSoftest; next <= kSoft; next *= kShiftGrowth) {
+    for (std::size_t i = 0; i < diagonal_.size(); ++i) {
+      at_->hessian.Diagonal(static_cast<int>(i)) += next * largest - softness_;
+    }
+    softness_ = next * largest;
+    const bool enough = definite;
+    definite = across_.Factor(at_->hessian) == BorderedCholesky::Status::kDefinite;
+    if (enough) return definite;
+  }
+  return false;
+}
+
+/// Newton's steps from near_, where it was evaluated, across way_: a valley is followed where it
+/// bends away from a straight line. Returns how far the cost is then below that at y. Steps are at
+/// most `away` long. Ends where they do not promise that it falls by `enough`.
+double OptimalityCheck::Sink(double away, double enough) {
+  double fall = cost_ - at_->full.value;
+  for (int i = 0; i < kSinkSteps; ++i) {
+    LagrangianSlope();
+    AcrossStep();
+    const double longest = Largest(sink_);
+    if (!(kPromise * Dot(slope_, sink_) > enough - fall) || !std::isfinite(longest)) break;
+    const double length = std::min(1.0, away / longest);
+    for (std::size_t k = 0; k < near_.size(); ++k) near_[k] -= length * size_[k] * sink_[k];
+    if (!EvaluateOnRows() || !(cost_ - at_->full.value > fall)) break;
+    fall = cost_ - at_->full.value;
+  }
+  return fall;
+}
+
+/// sink_ = Newton's step to the slope_, without its share in soft ways, which may be long and is
+/// noise, and along way_.
+void OptimalityCheck::AcrossStep() {
+  sink_ = slope_;
+  across_.Solve(sink_.data());
+  for (std::size_t k = 0; k < sink_.size(); ++k) soft_share_[k] = softness_ * sink_[k];
+  across_.Solve(soft_share_.data());
+  for (std::size_t k = 0; k < sink_.size(); ++k) sink_[k] -= soft_share_[k];
+  const double along = Dot(sink_, way_) / Dot(way_, way_);
+  for (std::size_t k = 0; k < sink_.size(); ++k) sink_[k] -= along * way_[k];
+}
+
+/// slope_ = that of the Lagrangian, at near_, where it was evaluated.
+void OptimalityCheck::LagrangianSlope() {
+  view_->MultiplyRowsTransposed(multipliers_.data(), at_, slope_.data());
+  for (std::size_t k = 0; k < slope_.size(); ++k) slope_[k] += at_->gradient[k];
+  for (int r = rows_.first_bound(); r < rows_.size(); ++r) {
+    slope_[rows_.column(rows_.start(r))] += lambda_[r];
+  }
+  for (std::size_t k = 0; k < slope_.size(); ++k) slope_[k] *= size_[k];
+}
+
 /// At near_, moved onto the rows that are held, and into the others.
 bool OptimalityCheck::EvaluateOnRows() {
   for (int i = 0; i < kMostCorrections; ++i) {
     view_->MoveIntoBounds(near_.data());
-    if (!Evaluate(near_.data(), {}, {})) return false;
+    if (!Evaluate(near_.data(), {.gradient = sinks_}, {})) return false;
     rows_.Values(*at_, u_near_.data());
     double most = 0.0;
     for (int r = 0; r < rows_.size(); ++r) {

@@ -147,7 +147,8 @@ void SolverBackend::Solve(const View& view, const WarmStart& warm, const Stop& s
   }
   if (listener_) listener_({view, warm, stop});
   const double cpu_start = ThreadCpuSeconds();
-  const bool asks_rule = stop.gap > 0.0 && n > 0 && !measures_gap();
+  const bool choice = view.num_free_variables() > 0;
+  const bool asks_rule = stop.gap > 0.0 && choice && !measures_gap();
   if (asks_rule) rule_.Begin(view, stop.gap);
   evaluator_.Begin(view, stop, asks_rule ? &rule_ : nullptr);
   result->trace.clear();
@@ -155,8 +156,8 @@ void SolverBackend::Solve(const View& view, const WarmStart& warm, const Stop& s
   for (auto& rows : result->multipliers) rows.clear();  // keeps its storage
   result->bound_multipliers.clear();
   result->native_status = 0;
-  if (n == 0) {
-    evaluator_.Evaluate(warm.y.data(), {});  // all is eliminated: nothing to choose
+  if (!choice) {
+    evaluator_.Evaluate(warm.y.data(), {});  // all is eliminated or fixed
     const bool feasible = evaluator_.best_violation() <= Evaluator::kFeasible;
     result->status = feasible ? SolveStatus::kConverged : SolveStatus::kInfeasible;
   } else {
@@ -180,7 +181,7 @@ void SolverBackend::Solve(const View& view, const WarmStart& warm, const Stop& s
   }
 
   result->optimality = {};
-  if (n > 0 && stop.confirm && !evaluator_.near_enough()) Judge(view, warm.y, result);
+  if (choice && stop.confirm && !evaluator_.near_enough()) Judge(view, warm.y, result);
 
   result->x = evaluator_.has_best() ? evaluator_.best() : warm.y;
   result->cost = evaluator_.best_cost();
@@ -205,9 +206,12 @@ void SolverBackend::Judge(const View& view, const Eigen::VectorXd& start, Solver
   const ShareScope scope(&evaluator_, Share::kEvaluation);
   const OptimalityCheck::MustStop must_stop = [this] { return evaluator_.CheckClock(); };
   ViewEvaluation* storage = evaluator_.mutable_last();
-  if (*status == SolveStatus::kInfeasible) {
-    const bool closer = check_.CanGetCloser(view, evaluator_.best(), must_stop, storage);
-    if (closer) *status = SolveStatus::kNumericalFailure;
+  const bool gave_up = *status == SolveStatus::kNumericalFailure && evaluator_.has_best() &&
+                       evaluator_.best_violation() > Evaluator::kFeasible;
+  if (*status == SolveStatus::kInfeasible || gave_up) {
+    const bool met = check_.LeadsToFeasible(view, evaluator_.best(), must_stop, storage);
+    *status = met ? SolveStatus::kNumericalFailure : SolveStatus::kInfeasible;
+    if (evaluator_.CheckClock()) *status = evaluator_.stop_status();
   } else if (*status == SolveStatus::kConverged || *status == SolveStatus::kUnconfirmed) {
     const Optimality at =
         check_.Look(view, evaluator_.best(), *result, evaluator_.first_cost(), must_stop, storage);

@@ -94,9 +94,10 @@ bool IpoptNlp::get_bounds_info(Index n, Number* x_l, Number* x_u, Index m, Numbe
   }
   int equalities = 0;
   for (int r = 0; r < m; ++r) equalities += rows_.lo(r) == rows_.hi(r);
-  // Ipopt refuses more equalities than variables, even if they are consistent. It solves them as
-  // narrow rows.
-  const double room = equalities > n ? kNarrow : 0.0;
+  // Ipopt refuses more equalities than free variables, even if they are consistent. Of as many it
+  // believes that they leave no choice, and ends at any point that meets them. As narrow rows it
+  // solves both.
+  const double room = equalities >= view_->num_free_variables() ? kNarrow : 0.0;
   for (int r = 0; r < m; ++r) {
     const bool equality = rows_.lo(r) == rows_.hi(r);
     g_l[r] = Bound(rows_.lo(r)) - (equality ? room : 0.0);

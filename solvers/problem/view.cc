@@ -76,6 +76,12 @@ double View::upper(int i) const {
   return interval ? problem_->shape().interval_max : problem_->upper(i);
 }
 
+int View::num_free_variables() const {
+  int free = 0;
+  for (int i = 0; i < num_variables(); ++i) free += fixed(i) ? 0 : 1;
+  return free;
+}
+
 void View::MoveIntoBounds(double* y) const {
   const int n = num_variables();
   const int first = bounded() ? 0 : n - (free_interval() ? 1 : 0);

@@ -3,6 +3,7 @@
 // that cannot be evaluated, multipliers.
 
 #include "solvers/test/every_backend.h"
+#include "touchdown/solvers/problems/reference_problem.h"
 
 namespace touchdown::solvers {
 namespace {
@@ -42,6 +43,38 @@ TEST_P(EveryRowBackend, InfeasibleIsAStatus) {
       << ToString(result.status) << ": " << result.message;
   EXPECT_TRUE(result.x.allFinite());
   EXPECT_GT(result.max_violation, 0.9);
+}
+
+TEST_P(EveryRowBackend, RowsThatContradictEachOtherAreInfeasible) {
+  // Linear equalities and, for all, circles that do not meet. The unit of the second variable says
+  // which row a point of least violation leaves.
+  for (const double unit : {1e-2, 1.0, 1e2}) {
+    for (const bool linear : {true, false}) {
+      if (linear && !Make()->capabilities().equality_rows) continue;
+      SmallProblem made("contradiction", {0.0, 0.0}, 0.0, EqualityForm::kRows);
+      made.Squares(2, [=](const auto* x, auto* u) {
+        u[0] = x[0] - 1.0;
+        u[1] = x[1] / unit - 1.0;
+      });
+      if (linear) {
+        made.Zero(3, [=](const auto* x, auto* u) {
+          u[0] = x[0] - 2.0;
+          u[1] = x[1] / unit + 1.0;
+          u[2] = x[0] + x[1] / unit - 2.0;
+        });
+      } else {
+        made.AtLeastZero(2, [=](const auto* x, auto* u) {
+          const auto a = x[0] - 2.0, b = x[1] / unit + 2.0;
+          u[0] = 1.0 - a * a - b * b;
+          u[1] = 1.0 - x[0] * x[0] - (b - 3.0) * (b - 3.0);
+        });
+      }
+      const ReferenceProblem p = made;
+      const SolverResult result = Solve(*p.problem, p.start, {.max_iterations = 1000});
+      EXPECT_EQ(result.status, SolveStatus::kInfeasible)
+          << unit << (linear ? " linear" : " circles") << ": " << result.message;
+    }
+  }
 }
 
 TEST_P(EveryRowBackend, ARowThatCannotBeEvaluatedIsAStatus) {

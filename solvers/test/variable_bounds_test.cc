@@ -117,6 +117,64 @@ TEST_P(BoundsOfEveryBackend, AVariableMayBeFixed) {
   EXPECT_NEAR(result.x[1], 5.0, 1e-9);
 }
 
+TEST_P(BoundsOfEveryBackend, ARowWithoutAFreeVariableIsAConstant) {
+  if (!Make()->capabilities().equality_rows) return;
+  const auto minus = [](double value) {
+    return [value](const auto* x, auto* u) { u[0] = x[0] - value; };
+  };
+  // x is 2 by its bounds, and a row says the same or another value. y is free, or has as many rows
+  // as there are free variables, or is fixed, too.
+  for (const double told : {2.0, 3.0}) {
+    for (const auto& [rows_of_y, upper] : {std::pair(0, kInfinity), {1, kInfinity}, {0, -1.0}}) {
+      Problem problem({.blocks = 2, .block_size = 1});
+      const auto add = [&](const FunctionShape& shape, double value, Role role) {
+        problem.AddTerm(std::make_shared<FunctionTerm>(
+                            TermInfo{.name = "minus"}, shape, SquareLoss(1.0), minus(value)),
+                        role);
+      };
+      add({.windows = 2}, 1.0, Role::kCost);
+      add({.windows = 1}, told, Role::kConstraint);
+      if (rows_of_y > 0) add({.first = 1, .windows = rows_of_y}, 0.5, Role::kConstraint);
+      problem.SetBounds({2.0, -1.0}, {2.0, upper});
+      const SolverResult result = Solve(problem, Eigen::Vector2d(0.0, 0.0));
+      EXPECT_EQ(result.status,
+                told == 2.0 ? SolveStatus::kConverged : SolveStatus::kInfeasible)
+          << rows_of_y << " " << upper << ": " << ToString(result.status);
+      if (told != 2.0) continue;
+      EXPECT_EQ(result.x[0], 2.0);
+      EXPECT_NEAR(result.x[1], upper < 0.0 ? upper : rows_of_y > 0 ? 0.5 : 1.0, 1e-4);
+    }
+  }
+}
+
+TEST_P(BoundsOfEveryBackend, AsManyEqualitiesAsFreeVariablesMayLeaveAChoice) {
+  if (!Make()->capabilities().equality_rows) return;
+  // x + y = 2, twice; then once where z, of the same block, is fixed and has a row of its own.
+  for (const bool fixed : {false, true}) {
+    const ReferenceProblem p =
+        SmallProblem("twice", {0.0, 5.0, 3.0}, 2.0, EqualityForm::kRows)
+            .Squares(3,
+                     [](const auto* x, auto* u) {
+                       u[0] = x[0] - 2.0;
+                       u[1] = x[1] - 2.0;
+                       u[2] = x[2] - 3.0;
+                     })
+            .Zero(3,
+                  [fixed](const auto* x, auto* u) {
+                    u[0] = x[0] + x[1] - 2.0;
+                    u[1] = fixed ? x[2] - 3.0 : 2.0 * u[0];
+                    u[2] = 0.5 * u[0];
+                  })
+            .Bound(2, fixed ? 3.0 : -kInfinity, fixed ? 3.0 : kInfinity);
+    SolverResult result;
+    if (!SolveReference(p, &result)) return;
+    EXPECT_NE(result.status, SolveStatus::kInfeasible) << fixed << ": " << result.message;
+    if (GetParam() == "nlopt-slsqp") continue;  // dependent rows are beyond its subproblem
+    EXPECT_EQ(result.status, SolveStatus::kConverged) << fixed << ": " << result.message;
+    EXPECT_NEAR(result.cost, 2.0, 1e-6) << fixed;
+  }
+}
+
 TEST_P(BoundsOfEveryBackend, AHillIsLeftFromEverywhere) {
   for (const double start : {-0.99, -0.5, -0.01, 0.01, 0.05, 0.1, 0.3, 1.0, 1.9}) {
     const ReferenceProblem p = SmallProblem("hill", {start}, -4.0, EqualityForm::kRows)

@@ -9,9 +9,9 @@
 namespace touchdown::solvers {
 
 /// The constraint rows of a view as one flat list lo <= u_r(y) <= hi with a sparse Jacobian, for
-/// backends that want them so. Rows are ordered by term, then active window, then output. A row on
-/// eliminated blocks alone at a fixed interval is a constant, which no solver can change. It is
-/// left out here, and only its violation is kept.
+/// backends that want them so. Rows are ordered by term, then active window, then output. A row
+/// without a variable that is free, one on eliminated blocks or on fixed variables alone, is a
+/// constant, which no solver can change. It is left out here, and only its violation is kept.
 class ConstraintRows {
  public:
   /// Allocates for the most rows that views of this structure can have. With `bounds` those of
@@ -61,6 +61,7 @@ class ConstraintRows {
     int reduced_count;
     int reduced[kMaxWindow];
   };
+  static bool IsConstant(const View& view, const Window& window);
 
   const View* view_ = nullptr;
   std::vector<Window> windows_;

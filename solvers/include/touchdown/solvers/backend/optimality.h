@@ -35,10 +35,11 @@ class OptimalityCheck {
   /// convex and quadratic. Infinite where the Lagrangian does not curve upwards. Does not allocate.
   double Above(const View& view, const Eigen::VectorXd& y, ViewEvaluation* storage);
 
-  /// Whether a step along the slopes of the rows, or a part of it, meets them better by half of
-  /// what they promise. Then a backend that says they cannot be met only gave up.
-  bool CanGetCloser(const View& view, const Eigen::VectorXd& y, const MustStop& must_stop,
-                    ViewEvaluation* storage);
+  /// Whether steps along the slopes of the rows (Gauss-Newton's, least squares of what they are
+  /// off) lead from y, or from beside it, to a point that meets them. Then a backend that says they
+  /// cannot be met only gave up. Does not allocate.
+  bool LeadsToFeasible(const View& view, const Eigen::VectorXd& y, const MustStop& must_stop,
+                       ViewEvaluation* storage);
 
  private:
   /// At which of its bounds a row is, by its multiplier's sign.
@@ -52,6 +53,7 @@ class OptimalityCheck {
     double outwards, farthest;
   };
   static constexpr double kFirstShift = 1e-15;  // rounding, share of the diagonal
+  static constexpr double kShiftGrowth = 10.0;
 
   bool Begin(const View& view, const Eigen::VectorXd& y, const MustStop& must_stop,
              ViewEvaluation* storage);
@@ -62,13 +64,14 @@ class OptimalityCheck {
   double Beyond(int row, double u) const;
   double Violation(int row, double u) const;
   double Violation(const std::vector<double>& u) const;
-  double TotalViolation(const std::vector<double>& u) const;
+  double SquaredViolation(const std::vector<double>& u) const;
   double WayTo(int row, double multiplier) const;
   Side SideOf(int row) const;
   bool EvaluateHessian(const double* multipliers, const double* weights, double cost_factor);
   void WeighRows(Kept kept);
   bool FactorRows();
   void StepOntoRows();
+  bool StepsCloser();
   void MoveAway(double share, const std::vector<double>& way);
   void Residual(const double* lambda);
   bool HoldRows();
@@ -82,6 +85,11 @@ class OptimalityCheck {
   bool FactorRowsAtBounds();
   bool Refutes(const Reach& reach, Optimality* found);
   double Fall(double sign, const Reach& reach, double rise, double* where);
+  bool RisesBefore(double way, double rise);
+  bool FactorAcross();
+  double Sink(double away, double enough);
+  void AcrossStep();
+  void LagrangianSlope();
   bool EvaluateOnRows();
   double OffRow(int row) const;
   bool HoldPushing(double pushes);
@@ -91,6 +99,7 @@ class OptimalityCheck {
 
   const View* view_ = nullptr;
   const Eigen::VectorXd* y_ = nullptr;
+  Eigen::VectorXd foot_;  // of steps onto the rows
   const MustStop* must_stop_ = nullptr;
   ViewEvaluation* at_ = nullptr;
   int evaluations_ = 0;
@@ -103,15 +112,20 @@ class OptimalityCheck {
   double shift_ = 0.0;      // that made the Hessian definite, share of the diagonal
   ConstraintRows rows_;     // bounds among them
   BorderedCholesky factor_;
+  BorderedCholesky across_;  // of the Hessian, where walks look for the bottom of a valley
+  bool sinks_ = false;       // they do
+  double softness_ = 0.0;    // on its diagonal
   std::vector<double> size_;  // of each variable, 1 + |y_i|; what follows is in variables over it
   std::vector<double>
       diagonal_;  // what shifts are a share of: the largest in each row of a Hessian
   std::vector<double> gradient_, residual_, step_, way_, soft_, near_;
+  std::vector<double> slope_, sink_, soft_share_;
   std::vector<int> order_;
   std::vector<double> u_, u_near_, off_, jacobian_, norm_, lambda_, weight_;
   std::vector<Side> side_;
   std::vector<std::vector<double>> by_term_, weights_by_term_;
   std::vector<RowWeights> row_weights_;
+  std::vector<const double*> multipliers_;  // by_term_
 };
 
 }  // namespace touchdown::solvers

@@ -61,6 +61,9 @@ class View {
   /// the view is the identity.
   double lower(int i) const;
   double upper(int i) const;
+  /// Its bounds leave it one value.
+  bool fixed(int i) const { return lower(i) == upper(i); }
+  int num_free_variables() const;
   /// Moves what is beyond its bounds onto them. Does not allocate.
   void MoveIntoBounds(double* y) const;
   int num_variables() const { return blocks() * block_size() + (free_interval() ? 1 : 0); }
