@@ -59,7 +59,7 @@ struct ReplannerOptions {
   StepConstants constants;  ///< what else a step decides by
 };
 
-/// Nothing is planned at positions whose coordinates reach this [m]: single cells and millimetres would be lost in them.
+/// Nothing is planned at positions whose coordinates reach this [m]: their last digits would be worth too much.
 inline constexpr double kFarthestPlace = 1e6;
 
 /// What one replanning step is asked. Plain data: a record can hold it and play it again.
