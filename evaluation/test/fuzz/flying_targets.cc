@@ -106,7 +106,7 @@ void FuzzReplanner(std::string_view bytes) {
   }
 }
 
-// Names of this century and the last, and what is no time at all.
+// Times of this century and the last, and what is no time at all.
 double WildTime(Choices* choices, double t) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   switch (choices->Below(10)) {
@@ -135,11 +135,15 @@ class OnboardFlight {
     onboard_.emplace(options, control::LandingParts(options));
     for (int i = choices_.Below(3); i > 0; --i) Disturb();
     onboard_->Take(vehicle_);
-    onboard_->Begin(0.0, Eigen::Vector4d::Constant(0.25 * model_.HoverThrust()));
   }
 
   void Fly() {
-    for (int step = 0; step < 1500 && (step < 100 || !choices_.empty()); ++step) {
+    try {
+      onboard_->Begin(vehicle_.t, Eigen::Vector4d::Constant(0.25 * model_.HoverThrust()));
+    } catch (const std::invalid_argument&) {
+      return;  // what was taken before is no hover
+    }
+    for (int step = 0; step < 600 && (step < 100 || !choices_.empty()); ++step) {
       if (choices_.Below(32) == 0) Disturb();
       Measure(step);
       const control::Setpoint& setpoint = onboard_->Step(Clock());
@@ -150,6 +154,8 @@ class OnboardFlight {
   }
 
  private:
+  static constexpr double kStep = 0.004;  // [s]
+
   double Clock() const { return vehicle_.t + offset_; }
   Vector3d PadAt() const { return {3.0 + 0.4 * vehicle_.t, 0.5, 0.5}; }
 
@@ -162,7 +168,6 @@ class OnboardFlight {
   }
 
   void Move(const control::Setpoint& setpoint) {
-    constexpr double kStep = 0.002;
     vehicle_.q_WB = vehicle_.q_WB.slerp(kStep / 0.05, Eigen::Quaterniond(setpoint.R_WB)).normalized();
     const Vector3d force = vehicle_.q_WB * Vector3d(0.0, 0.0, setpoint.wrench.thrust);
     vehicle_.v_WB += kStep / model_.mass_kg * (force - Vector3d(0.0, 0.0, model_.HoverThrust()));
@@ -175,12 +180,12 @@ class OnboardFlight {
     state.t = Clock();
     onboard_->Take(state);
     onboard_->Take(estimation::FootForce{Clock(), 0.0});
-    if (step % 50 == 0) {
+    if (step % 25 == 0) {
       onboard_->Take(estimation::PadGpsFix{Clock(), PadAt().head<2>(), 0.05});
       onboard_->Take(Depth(Clock()));
     }
     const Vector3d p_BP = vehicle_.q_WB.conjugate() * (PadAt() - vehicle_.p_WB);
-    if (step % 25 == 0 && p_BP.z() < -0.15) {
+    if (step % 12 == 0 && p_BP.z() < -0.15) {
       onboard_->Take(estimation::PadSighting{Clock(), p_BP, 0.0, Vector3d::Constant(0.005), 0.01, 5});
     }
   }
@@ -232,14 +237,16 @@ class OnboardFlight {
 
   // After a second of right calls its time is that of the clock again.
   void Recovers() {
-    for (int step = 0; step < 500; ++step) {
+    for (int step = 0; step < 250; ++step) {
       Measure(step);
       const control::Setpoint& setpoint = onboard_->Step(Clock());
       Look(setpoint);
       Move(setpoint);
     }
     const double t = Clock();
-    Require(t < 0.0 || t > 1e10 || onboard_->Step(t).t == t, "the set-point stays frozen");
+    if (t < 0.0 || t > 1e10) return;
+    const control::Setpoint& last = onboard_->Step(t);
+    Require(last.t == t && last.CountsAt(t), "the set-point stays frozen");
   }
 
   Choices& choices_;
