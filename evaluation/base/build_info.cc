@@ -114,7 +114,7 @@ Pairs BuildManifest() {
       {"cpu", CpuInfo("model name")},
       {"cpu_flags", CpuInfo("flags")},
   };
-  const std::string hash = Hash(facts);
+  static const std::string hash = Hash(facts);  // of megabytes
   facts.emplace_back("build_hash", hash);
   // What no figure but those of the wall clock depends on.
   facts.emplace_back("cpus", std::to_string(std::thread::hardware_concurrency()));
