@@ -198,8 +198,17 @@ class PythonMap : public solvers::BatchMap {
     WithLock([&] {
       const PadLoan loan(*this);
       const py::ssize_t n = batch.size, w = shape_.window, d = shape_.block_size;
-      work(windows_type_.get()(py::array_t<double>({n, w, d}, batch.q), batch.h,
-                               py::array_t<double>(n, batch.t), py::array_t<int>(n, batch.window)));
+      try {
+        work(windows_type_.get()(py::array_t<double>({n, w, d}, batch.q), batch.h,
+                                 py::array_t<double>(n, batch.t),
+                                 py::array_t<int>(n, batch.window)));
+      } catch (const py::error_already_set& error) {
+        const py::str first = py::str(py::array_t<double>({w, d}, batch.q));
+        error.value().attr("add_note")(Of(name_, "asked for " + std::to_string(n) +
+                                                     " windows, the first at q = " +
+                                                     std::string(first)));
+        throw;
+      }
       if (!time_) return;
       ++time_->calls;
       time_->windows += batch.size;

@@ -200,6 +200,28 @@ class Coordinates {
   MatrixXd directions_;
 };
 
+/// The nearest point with room for a step to both sides of every variable.
+VectorXd MoveInside(const View& view, VectorXd y, double step) {
+  view.MoveIntoBounds(y.data());
+  for (int i = 0; i < view.num_variables(); ++i) {
+    const double room = std::min(step, 0.5 * (view.upper(i) - view.lower(i)));
+    y[i] = std::clamp(y[i], view.lower(i) + room, view.upper(i) - room);
+  }
+  return y;
+}
+
+/// Of a move along a direction, to both sides: no variable moves by more than `step`, nor beyond
+/// its bounds.
+double LongestMove(const View& view, const VectorXd& y, const VectorXd& direction, double step) {
+  double longest = step / direction.cwiseAbs().maxCoeff();
+  for (int i = 0; i < view.num_variables(); ++i) {
+    if (direction[i] == 0.0) continue;
+    const double room = std::min(y[i] - view.lower(i), view.upper(i) - y[i]);
+    if (room < step) longest = std::min(longest, room / std::abs(direction[i]));
+  }
+  return longest;
+}
+
 }  // namespace
 
 double DerivativeErrors::worst() const {
@@ -211,8 +233,10 @@ double DerivativeErrors::worst() const {
   return worst;
 }
 
-DerivativeErrors CheckDerivatives(const View& view, const VectorXd& y, const Lagrangian& lagrangian,
-                                  double step, const Whitening* whitening) {
+DerivativeErrors CheckDerivatives(const View& view, const VectorXd& point,
+                                  const Lagrangian& lagrangian, double step,
+                                  const Whitening* whitening) {
+  const VectorXd y = MoveInside(view, point, step);
   constexpr Want kAll{.gradient = true, .hessian = true, .residual = true};
   DerivativeErrors errors;
   Sides s;
@@ -237,9 +261,14 @@ DerivativeErrors CheckDerivatives(const View& view, const VectorXd& y, const Lag
            (2.0 * s.dz);
   };
   double longest = 0.0, shortest = HUGE_VAL;
+  std::vector<int> fixed;
   for (int j = 0; j < n; ++j) {
     const VectorXd direction = in.direction(j);
-    const double dz = step / direction.cwiseAbs().maxCoeff();
+    const double dz = LongestMove(view, y, direction, step);
+    if (dz == 0.0) {  // a fixed variable: nothing to compare
+      fixed.push_back(j);
+      continue;
+    }
     longest = std::max(longest, dz);
     shortest = std::min(shortest, dz);
     // On the edge of a hinge the gradient grows like u^2 to one side. The error of its central
@@ -253,9 +282,19 @@ DerivativeErrors CheckDerivatives(const View& view, const VectorXd& y, const Lag
     r_difference.col(j) = ResidualDifference(view, s, r_jacobian.col(j));
   }
 
+  if (static_cast<int>(fixed.size()) == n) {
+    errors.evaluated = true;
+    return errors;
+  }
   const Magnitudes sizes = MagnitudesOf(view, s.at, lagrangian);
   const MatrixXd mine = in.Rows(in.Rows(Dense(s.at.hessian)).transpose()).transpose();
   const VectorXd slope = in.Gradient(Eigen::Map<const VectorXd>(s.at.gradient.data(), n));
+  for (const int j : fixed) {
+    gradient[j] = slope[j];
+    hessian.col(j) = mine.col(j);
+    u_difference.col(j) = u_jacobian.col(j);
+    r_difference.col(j) = r_jacobian.col(j);
+  }
   // The curvature of the terms where they act. Near the edge of a hinge all curvature is smaller,
   // but the differences reach beyond the edge.
   Lagrangian nominal = lagrangian;

@@ -31,7 +31,7 @@ constexpr double kBoundRounding = 1e-12;
 constexpr double kLeastCost = 0.1;
 constexpr double kLastShift = 1e6;
 // Steps onto the rows.
-constexpr double kBeside[] = {0.0, 1e-2, -2e-2};  // of the sizes: from where the last ones ended
+constexpr double kNudges[] = {0.0, 1e-2, -2e-2};  // of the sizes: from where the last ones ended
 constexpr int kMostRowSteps = 40;                 // at a double root they halve the way
 constexpr double kReaches[] = {1.0, 0.1, 0.01};  // shares of a step
 constexpr double kCloser = 0.1;                  // share of it by which the squares fall at least
@@ -249,7 +249,7 @@ bool OptimalityCheck::LeadsToFeasible(const View& view, const Eigen::VectorXd& y
                                       const MustStop& must_stop, ViewEvaluation* storage) {
   foot_ = y;
   // Where slopes vanish no step leads on. Beside such a point they do not.
-  for (const double beside : kBeside) {
+  for (const double beside : kNudges) {
     for (double& x : foot_) x += beside * (1.0 + std::abs(x));
     view.MoveIntoBounds(foot_.data());
     for (int i = 0; i < kMostRowSteps && Begin(view, foot_, must_stop, storage); ++i) {

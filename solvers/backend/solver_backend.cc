@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <stdexcept>
 
 #include "touchdown/solvers/backend/constraint_rows.h"
@@ -82,10 +83,24 @@ void SolverBackend::Reserve(const View& view, SolverResult* result) {
 
 namespace {
 
-std::string WhatFailed(const Problem& problem, const Evaluation& at) {
-  const std::string term =
-      at.failed_term >= 0 ? "term " + problem.term(at.failed_term).info().name : "the gradient";
-  return at.failure.empty() ? term + " is not finite" : term + ": " + at.failure;
+/// Which term, why, and where.
+std::string WhatFailed(const Problem& problem, const ViewEvaluation& at) {
+  constexpr std::size_t kMostNumbers = 6;
+  const Evaluation& full = at.full;
+  std::ostringstream text;
+  if (full.failed_term >= 0) {
+    text << "term " << problem.term(full.failed_term).info().name;
+  } else {
+    text << "the gradient";
+  }
+  text << (full.failure.empty() ? " is not finite" : ": " + full.failure) << ", at (";
+  for (std::size_t i = 0; i < std::min(kMostNumbers, at.x.size()); ++i) {
+    text << (i > 0 ? ", " : "") << at.x[i];
+  }
+  if (at.x.size() > kMostNumbers) text << ", ... of " << at.x.size() << " numbers";
+  text << ')';
+  if (problem.shape().free_interval) text << " and interval " << at.h;
+  return text.str();
 }
 
 }  // namespace
@@ -176,7 +191,7 @@ void SolverBackend::Solve(const View& view, const WarmStart& warm, const Stop& s
   if (!evaluator_.has_best()) result->status = SolveStatus::kEvaluationFailed;
   result->worst_term = evaluator_.worst_term();
   if (result->status == SolveStatus::kEvaluationFailed) {
-    result->message = WhatFailed(view.problem(), evaluator_.last().full);
+    result->message = WhatFailed(view.problem(), evaluator_.last());
     result->worst_term = evaluator_.last().full.failed_term;
   }
 

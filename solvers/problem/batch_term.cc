@@ -32,10 +32,25 @@ const double kSecondStep = std::pow(std::numeric_limits<double>::epsilon(), 0.25
 constexpr std::array<double, 5> kSideWeights = {-25.0 / 12.0, 4.0, -3.0, 4.0 / 3.0, -0.25};
 
 // A smaller step would be rounded in x.
-double StepAt(double x, double step) {
-  constexpr double kRounding = 1e4 * std::numeric_limits<double>::epsilon();
-  return std::max(step, kRounding * std::abs(x));
-}
+constexpr double kRounding = 1e4 * std::numeric_limits<double>::epsilon();
+
+// A number and its bounds.
+struct Bounded {
+  double x, lower, upper;
+
+  // Four of them have room to one side at least. 0: it is fixed.
+  double Step(double wanted) const {
+    const double least = kRounding * std::abs(x), most = 0.125 * (upper - lower);
+    return most > least ? std::min(std::max(wanted, least), most) : 0.0;
+  }
+  bool HasRoom(double from, double to) const { return x + from >= lower && x + to <= upper; }
+  // So many steps away, or the bound.
+  double Moved(double by) const { return std::clamp(x + by, lower, upper); }
+  // The nearest middle of one step to either side.
+  double Middle(double step) const {
+    return step > 0.0 ? std::clamp(x, lower + step, upper - step) : x;
+  }
+};
 
 // Numbers of the copies that a call asks for at a time.
 constexpr std::size_t kMostNumbers = std::size_t{1} << 22;
@@ -47,6 +62,7 @@ class BatchTerm::Differences {
  public:
   Differences(const BatchTerm& term, const TermInput& input, const TermBlock& block)
       : term_(term),
+        input_(input),
         t0_(input.t0),
         h_(input.h),
         free_(term.UsesInterval(input)),
@@ -79,11 +95,19 @@ class BatchTerm::Differences {
     }
     if (own == OwnSlopes::kAll) return;
     std::fill_n(block->du_dh.begin(), n_ * m_, 0.0);
-    if (!free_) return;
-    const double step = h_ * kFineStep;
-    for (std::size_t s = 0; s < kSteps.size(); ++s) {
-      const std::vector<double> u = ValuesAt(h_ + kSteps[s] * step);
-      for (int i = 0; i < n_ * m_; ++i) block->du_dh[i] += kWeights[s] * u[i] / step;
+    const double step = Interval().Step(h_ * kFineStep);
+    if (!free_ || step == 0.0) return;
+    const auto add = [&](double steps, double weight) {
+      const std::vector<double> u = ValuesAt(Interval().Moved(steps * step));
+      for (int i = 0; i < n_ * m_; ++i) block->du_dh[i] += weight * u[i] / step;
+    };
+    if (Interval().HasRoom(-2.0 * step, 2.0 * step)) {
+      for (std::size_t s = 0; s < kSteps.size(); ++s) add(kSteps[s], kWeights[s]);
+      return;
+    }
+    const double side = Interval().HasRoom(0.0, 4.0 * step) ? 1.0 : -1.0;
+    for (std::size_t s = 0; s < kSideWeights.size(); ++s) {
+      add(side * static_cast<double>(s), side * kSideWeights[s]);
     }
   }
 
@@ -152,12 +176,32 @@ class BatchTerm::Differences {
     Add([](int, double*) {});
     return Values();
   }
-  // A step of variable i of a window.
-  double Step(int k, int i, double share) const {
-    return StepAt(q_[static_cast<std::size_t>(k * v_ + i)], share * term_.scale_);
+  // Variable i of a window.
+  Bounded At(int k, int i) const {
+    constexpr double kNone = std::numeric_limits<double>::infinity();
+    const int block = first_block_[static_cast<std::size_t>(k)];
+    const int x = block * term_.shape_.block_size + i;
+    return {q_[static_cast<std::size_t>(k * v_ + i)], input_.lower ? input_.lower[x] : -kNone,
+            input_.upper ? input_.upper[x] : kNone};
+  }
+  Bounded Interval() const { return {h_, input_.h_lower, input_.h_upper}; }
+  double Step(int k, int i, double share) const { return At(k, i).Step(share * term_.scale_); }
+  bool HasRoom(int k, int i, double from, double to) const {
+    const double step = Step(k, i, kFineStep);
+    return At(k, i).HasRoom(from * step, to * step);
   }
   void AddMoved(int i, double steps, double share) {
-    Add([&](int k, double* q) { q[i] += steps * Step(k, i, share); });
+    Add([&](int k, double* q) { q[i] = At(k, i).Moved(steps * Step(k, i, share)); });
+  }
+  // For curvatures: near a bound all copies are moved inwards, so that both sides have room.
+  void Centre(int k, double* q, double share) const {
+    for (int i = 0; i < v_; ++i) q[i] = At(k, i).Middle(Step(k, i, share));
+  }
+  void AddCentred(int i, double steps, double share) {
+    Add([&](int k, double* q) {
+      Centre(k, q, share);
+      q[i] += steps * Step(k, i, share);
+    });
   }
 
   void CallForSlopes(TermBlock* block) {
@@ -171,6 +215,8 @@ class BatchTerm::Differences {
       const std::vector<double> u = Values();
       std::copy_n(u.begin(), (end_ - begin_) * m_, block->u.begin() + begin_ * m_);
       const auto difference = [&](int k, int c, int i) {
+        if (Step(k, i, kFineStep) == 0.0) return 0.0;
+        if (!HasRoom(k, i, -2.0, 2.0)) return std::numeric_limits<double>::quiet_NaN();
         double sum = 0.0;
         for (int s = 0; s < kCopies; ++s) sum += kWeights[s] * u[Row(1 + kCopies * i + s, k, c)];
         return sum / Step(k, i, kFineStep);
@@ -190,7 +236,8 @@ class BatchTerm::Differences {
     }
   }
 
-  /// Slopes that lack a copy which cannot be evaluated: from above, else from below.
+  /// Slopes that lack a copy, which cannot be evaluated or is beyond a bound: from above, else from
+  /// below.
   void AskTheOtherSide(TermBlock* block) {
     constexpr int kCopies = static_cast<int>(kSideWeights.size());
     for (const double side : {1.0, -1.0}) {
@@ -214,6 +261,7 @@ class BatchTerm::Differences {
             [&](int k, int c, int i) {
               const double known = block->slopes(k * m_ + c)[i];
               if (std::isfinite(known)) return known;
+              if (!HasRoom(k, i, std::min(0.0, 4.0 * side), std::max(0.0, 4.0 * side))) return known;
               double sum = 0.0;
               for (int s = 0; s < kCopies; ++s)
                 sum += kSideWeights[s] * u[Row(kCopies * i + s, k, c)];
@@ -238,22 +286,23 @@ class BatchTerm::Differences {
     }
     return sum;
   }
-  double* At(std::vector<double>* out, int k) const {
+  double* BlockOf(std::vector<double>* out, int k) const {
     const auto n = static_cast<std::size_t>(v_ + 1);
     return &(*out)[static_cast<std::size_t>(k) * n * n];
   }
 
   void BlocksFromValues(std::vector<double>* out) {
     Start(h_);
-    Add([](int, double*) {});
+    Add([&](int k, double* q) { Centre(k, q, kSecondStep); });
     for (int i = 0; i < v_; ++i) {
-      AddMoved(i, 1.0, kSecondStep);
-      AddMoved(i, -1.0, kSecondStep);
+      AddCentred(i, 1.0, kSecondStep);
+      AddCentred(i, -1.0, kSecondStep);
     }
     for (int i = 0; i < v_; ++i) {
       for (int j = i + 1; j < v_; ++j) {
         for (const double sign : {1.0, -1.0}) {
           Add([&](int k, double* q) {
+            Centre(k, q, kSecondStep);
             q[i] += sign * Step(k, i, kSecondStep);
             q[j] += sign * Step(k, j, kSecondStep);
           });
@@ -262,7 +311,7 @@ class BatchTerm::Differences {
     }
     const std::vector<double> u = Values();
     for (int k = begin_; k < end_; ++k) {
-      double* to = At(out, k);
+      double* to = BlockOf(out, k);
       const double middle = Sum(u, 0, k);
       const auto both = [&](int i) { return Sum(u, 1 + 2 * i, k) + Sum(u, 2 + 2 * i, k); };
       int copy = 1 + 2 * v_;
@@ -282,12 +331,12 @@ class BatchTerm::Differences {
   void BlocksFromSlopes(std::vector<double>* out) {
     Start(h_);
     for (int i = 0; i < v_; ++i) {
-      AddMoved(i, 1.0, kFirstStep);
-      AddMoved(i, -1.0, kFirstStep);
+      AddCentred(i, 1.0, kFirstStep);
+      AddCentred(i, -1.0, kFirstStep);
     }
     const std::vector<double> du = MapSlopes();
     for (int k = begin_; k < end_; ++k) {
-      double* to = At(out, k);
+      double* to = BlockOf(out, k);
       for (int i = 0; i < v_; ++i) {
         for (int j = 0; j < v_; ++j) {
           const double difference = SlopeSum(du, 2 * i, k, j) - SlopeSum(du, 2 * i + 1, k, j);
@@ -317,20 +366,23 @@ class BatchTerm::Differences {
 
   // With the interval: as differences of values, copies at one step up and one down.
   void Border(std::vector<double>* out) {
-    const double step = h_ * kSecondStep;
-    const std::vector<double> middle = ValuesAt(h_);
+    const double step = Interval().Step(h_ * kSecondStep), h = Interval().Middle(step);
+    const auto centre = [&](int k, double* q) { Centre(k, q, kSecondStep); };
+    Start(h);
+    Add(centre);
+    const std::vector<double> middle = Values();
     std::vector<double> moved[2];
     for (const int side : {0, 1}) {
-      Start(h_ + (side == 0 ? step : -step));
-      Add([](int, double*) {});
+      Start(h + (side == 0 ? step : -step));
+      Add(centre);
       for (int i = 0; i < v_; ++i) {
-        AddMoved(i, 1.0, kSecondStep);
-        AddMoved(i, -1.0, kSecondStep);
+        AddCentred(i, 1.0, kSecondStep);
+        AddCentred(i, -1.0, kSecondStep);
       }
       moved[side] = Values();
     }
     for (int k = begin_; k < end_; ++k) {
-      double* to = At(out, k);
+      double* to = BlockOf(out, k);
       const double ends = Sum(moved[0], 0, k) + Sum(moved[1], 0, k);
       to[v_ * (v_ + 1) + v_] = (ends - 2.0 * Sum(middle, 0, k)) / (step * step);
       for (int i = 0; i < v_; ++i) {
@@ -344,6 +396,7 @@ class BatchTerm::Differences {
   }
 
   const BatchTerm& term_;
+  const TermInput& input_;
   double t0_, h_;
   bool free_;
   int n_, v_, m_;

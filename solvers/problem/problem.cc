@@ -164,7 +164,14 @@ bool Problem::Evaluate(const double* x, double h, Want want, const Lagrangian& l
 
 bool Problem::EvaluateAll(const double* x, double h, Want want, const Lagrangian& lagrangian,
                           Evaluation* evaluation) const noexcept {
-  const TermInput input{x, h, t0_, shape_.free_interval};
+  const TermInput input{.x = x,
+                        .h = h,
+                        .t0 = t0_,
+                        .free_interval = shape_.free_interval,
+                        .lower = bounded() ? lower_.data() : nullptr,
+                        .upper = bounded() ? upper_.data() : nullptr,
+                        .h_lower = shape_.interval_min,
+                        .h_upper = shape_.interval_max};
   evaluation->value = 0.0;
   evaluation->max_violation = 0.0;
   evaluation->worst_term = -1;
@@ -203,6 +210,7 @@ bool Problem::EvaluateAll(const double* x, double h, Want want, const Lagrangian
     evaluation->failure = error.what();
     return false;
   } catch (...) {
+    evaluation->failure = "it threw what is no std::exception";
     return false;
   }
   evaluation->failed_term = -1;

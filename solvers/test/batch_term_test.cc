@@ -4,10 +4,13 @@
 #include "touchdown/solvers/problem/batch_term.h"
 
 #include <cmath>
+#include <stdexcept>
 
 #include <gtest/gtest.h>
 
+#include "touchdown/solvers/backend/derivative_check.h"
 #include "touchdown/solvers/backend/newton_step.h"
+#include "touchdown/solvers/backend_registry.h"
 #include "touchdown/solvers/problem/problem.h"
 #include "touchdown/solvers/problem/window_term.h"
 #include "touchdown/solvers/solve.h"
@@ -246,6 +249,68 @@ TEST(BatchTerm, RefusesSizes) {
   const auto term = std::make_shared<BatchTerm>(TermInfo{"a"}, shape, SquareLoss(1.0),
                                                 std::make_shared<Batched>(OwnSlopes::kNone));
   EXPECT_THROW(problem.AddTerm(term, Role::kCost), std::length_error);
+}
+
+/// log x - 1, which throws where there is no logarithm.
+class Logarithm : public BatchMap {
+ public:
+  int windows() const override { return 2; }
+  int first_block() const override { return 0; }
+  void Value(const WindowBatch& b, double* u) const override {
+    for (int i = 0; i < b.size; ++i) {
+      if (!(b.q[i] >= 0.25 && b.q[i] <= 4.0)) throw std::domain_error("beyond the bounds");
+      u[i] = std::log(b.q[i]) - 1.0 + 0.1 * b.window[i];
+    }
+  }
+};
+
+Problem BoundedLogarithms(std::vector<double> lower, std::vector<double> upper) {
+  Problem problem({.blocks = 2, .block_size = 1});
+  problem.AddTerm(
+      std::make_shared<BatchTerm>(TermInfo{"log"},
+                                  BatchShape{.block_size = 1, .window = 1, .max_windows = 2},
+                                  SquareLoss(2.0), std::make_shared<Logarithm>()),
+      Role::kCost);
+  problem.SetBounds(std::move(lower), std::move(upper));
+  return problem;
+}
+
+TEST(BatchTerm, DifferencesKeepToTheBounds) {
+  for (const auto& [a, b] : {std::pair(0.25, 4.0), {0.2505, 3.999}, {1.0, 0.25}}) {
+    const Problem problem = BoundedLogarithms({0.25, 0.25}, {4.0, 4.0});
+    const View view(problem);
+    ViewEvaluation at;
+    view.Resize(&at);
+    const Eigen::Vector2d y(a, b);
+    ASSERT_TRUE(view.Evaluate(y.data(), {.gradient = true, .hessian = true}, {}, &at))
+        << at.full.failure;
+    for (int i = 0; i < 2; ++i) {
+      const double u = std::log(y[i]) - 1.0 + 0.1 * i;
+      EXPECT_NEAR(at.gradient[i], 2.0 * u / y[i], 1e-9 / std::pow(y[i], 5));
+      EXPECT_NEAR(at.hessian.Diagonal(i), 2.0 * (1.0 - u) / (y[i] * y[i]), 1e-3 / (y[i] * y[i]));
+    }
+    EXPECT_LT(CheckDerivatives(view, y).worst(), 1e-3);
+  }
+  // Narrow, and fixed: the slope of what cannot move is none.
+  for (const double width : {1e-3, 1e-7, 0.0}) {
+    const Problem problem = BoundedLogarithms({0.25, 4.0 - width}, {0.25 + width, 4.0});
+    const View view(problem);
+    ViewEvaluation at;
+    view.Resize(&at);
+    const Eigen::Vector2d y(0.25, 4.0);
+    ASSERT_TRUE(view.Evaluate(y.data(), {.gradient = true, .hessian = true}, {}, &at)) << width;
+    const double slope = 8.0 * (std::log(0.25) - 1.0);
+    EXPECT_NEAR(at.gradient[0], width > 0.0 ? slope : 0.0, 1e-5) << width;
+  }
+  for (const char* backend : {"banded", "lbfgs", "ipopt", "nlopt-lbfgs", "nlopt-slsqp"}) {
+    const Problem problem = BoundedLogarithms({0.25, 0.25}, {4.0, 2.0});
+    const View view(problem);
+    const auto solver = MakeBackend(StandardBackends(), backend);
+    if (!solver->Refusal(view).empty()) continue;
+    const SolverResult result = Solve(problem, Eigen::Vector2d(0.25, 0.25), backend);
+    EXPECT_NEAR(result.x[0], std::exp(1.0), 1e-4) << backend << " " << result.message;
+    EXPECT_NEAR(result.x[1], 2.0, 1e-4) << backend << " " << result.message;
+  }
 }
 
 }  // namespace

@@ -612,7 +612,8 @@ TEST_P(ClaimsOfEveryBackend, WhatFailedIsNamed) {
     const SolverResult result = SolveReference(sensor);
     EXPECT_EQ(result.status, SolveStatus::kEvaluationFailed);
     EXPECT_EQ(result.message,
-              throws ? "term squares: out of its range" : "term squares is not finite");
+              throws ? "term squares: out of its range, at (-1)"
+                     : "term squares is not finite, at (-1)");
   }
 }
 

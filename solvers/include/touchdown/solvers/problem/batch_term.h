@@ -57,8 +57,9 @@ struct BatchShape {
 /// all windows and variables in one call, and a few calls for the interval. For a u that is smooth
 /// over `scale`, slopes are good to about 1e-12 of u over scale. Curvatures are good to 1e-7 of u
 /// over scale^2 from values, to 1e-9 from the map's own slopes. If a moved copy is not finite,
-/// slopes are found from the other side, and the curvature is left out. Allocates at every
-/// evaluation.
+/// slopes are found from the other side, and the curvature is left out. Copies keep to the
+/// variables' bounds: near one, slopes are one-sided, and a curvature is that of a point up to a
+/// step of 1e-4 scale further inside. A fixed variable has neither. Allocates at every evaluation.
 class BatchTerm : public Term {
  public:
   /// Throws std::invalid_argument on a size out of range or without a map.

@@ -51,6 +51,10 @@ struct TermInput {
   double h = 1.0;              ///< knot interval [s]
   double t0 = 0.0;             ///< absolute time of knot 0 [s]
   bool free_interval = false;  ///< h is a variable: its derivatives are wanted too
+  /// Bounds of x and of a free h, for terms that find derivatives by differences. Null: none.
+  const double* lower = nullptr;
+  const double* upper = nullptr;
+  double h_lower = 0.0, h_upper = std::numeric_limits<double>::infinity();
 };
 
 /// What is wanted of an evaluation; implied parts are added by the term (a Hessian needs
