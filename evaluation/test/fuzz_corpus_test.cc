@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The committed corpora of the fuzzers (./test.sh fuzz), in this build: what was found once stays mended.
+// The committed corpora of the fuzzers (./test.sh fuzz), in this build: what was found once does not come back.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
