@@ -34,8 +34,11 @@ constexpr std::array<double, 5> kSideWeights = {-25.0 / 12.0, 4.0, -3.0, 4.0 / 3
 // A smaller step would be rounded in x.
 constexpr double kRounding = 1e4 * std::numeric_limits<double>::epsilon();
 
-// A number and its bounds.
+// A number and its bounds, which are none where it is beyond them.
 struct Bounded {
+  Bounded(double at, double lo, double hi)
+      : x(at), lower(at < lo || at > hi ? -kNone : lo), upper(at < lo || at > hi ? kNone : hi) {}
+  static constexpr double kNone = std::numeric_limits<double>::infinity();
   double x, lower, upper;
 
   // Four of them have room to one side at least. 0: it is fixed.
@@ -44,8 +47,7 @@ struct Bounded {
     return most > least ? std::min(std::max(wanted, least), most) : 0.0;
   }
   bool HasRoom(double from, double to) const { return x + from >= lower && x + to <= upper; }
-  // So many steps away, or the bound.
-  double Moved(double by) const { return std::clamp(x + by, lower, upper); }
+  double Clamped(double to) const { return std::clamp(to, lower, upper); }  // rounding
   // The nearest middle of one step to either side.
   double Middle(double step) const {
     return step > 0.0 ? std::clamp(x, lower + step, upper - step) : x;
@@ -98,7 +100,7 @@ class BatchTerm::Differences {
     const double step = Interval().Step(h_ * kFineStep);
     if (!free_ || step == 0.0) return;
     const auto add = [&](double steps, double weight) {
-      const std::vector<double> u = ValuesAt(Interval().Moved(steps * step));
+      const std::vector<double> u = ValuesAt(Interval().Clamped(h_ + steps * step));
       for (int i = 0; i < n_ * m_; ++i) block->du_dh[i] += weight * u[i] / step;
     };
     if (Interval().HasRoom(-2.0 * step, 2.0 * step)) {
@@ -178,11 +180,10 @@ class BatchTerm::Differences {
   }
   // Variable i of a window.
   Bounded At(int k, int i) const {
-    constexpr double kNone = std::numeric_limits<double>::infinity();
     const int block = first_block_[static_cast<std::size_t>(k)];
     const int x = block * term_.shape_.block_size + i;
-    return {q_[static_cast<std::size_t>(k * v_ + i)], input_.lower ? input_.lower[x] : -kNone,
-            input_.upper ? input_.upper[x] : kNone};
+    return {q_[static_cast<std::size_t>(k * v_ + i)], input_.lower ? input_.lower[x] : -Bounded::kNone,
+            input_.upper ? input_.upper[x] : Bounded::kNone};
   }
   Bounded Interval() const { return {h_, input_.h_lower, input_.h_upper}; }
   double Step(int k, int i, double share) const { return At(k, i).Step(share * term_.scale_); }
@@ -190,8 +191,11 @@ class BatchTerm::Differences {
     const double step = Step(k, i, kFineStep);
     return At(k, i).HasRoom(from * step, to * step);
   }
+  void Move(int k, int i, double steps, double share, double* q) const {
+    q[i] = At(k, i).Clamped(q[i] + steps * Step(k, i, share));
+  }
   void AddMoved(int i, double steps, double share) {
-    Add([&](int k, double* q) { q[i] = At(k, i).Moved(steps * Step(k, i, share)); });
+    Add([&](int k, double* q) { Move(k, i, steps, share, q); });
   }
   // For curvatures: near a bound all copies are moved inwards, so that both sides have room.
   void Centre(int k, double* q, double share) const {
@@ -200,7 +204,7 @@ class BatchTerm::Differences {
   void AddCentred(int i, double steps, double share) {
     Add([&](int k, double* q) {
       Centre(k, q, share);
-      q[i] += steps * Step(k, i, share);
+      Move(k, i, steps, share, q);
     });
   }
 
@@ -303,8 +307,8 @@ class BatchTerm::Differences {
         for (const double sign : {1.0, -1.0}) {
           Add([&](int k, double* q) {
             Centre(k, q, kSecondStep);
-            q[i] += sign * Step(k, i, kSecondStep);
-            q[j] += sign * Step(k, j, kSecondStep);
+            Move(k, i, sign, kSecondStep, q);
+            Move(k, j, sign, kSecondStep, q);
           });
         }
       }
@@ -373,7 +377,7 @@ class BatchTerm::Differences {
     const std::vector<double> middle = Values();
     std::vector<double> moved[2];
     for (const int side : {0, 1}) {
-      Start(h + (side == 0 ? step : -step));
+      Start(Interval().Clamped(h + (side == 0 ? step : -step)));
       Add(centre);
       for (int i = 0; i < v_; ++i) {
         AddCentred(i, 1.0, kSecondStep);

@@ -287,7 +287,8 @@ TEST(BatchTerm, DifferencesKeepToTheBounds) {
     for (int i = 0; i < 2; ++i) {
       const double u = std::log(y[i]) - 1.0 + 0.1 * i;
       EXPECT_NEAR(at.gradient[i], 2.0 * u / y[i], 1e-9 / std::pow(y[i], 5));
-      EXPECT_NEAR(at.hessian.Diagonal(i), 2.0 * (1.0 - u) / (y[i] * y[i]), 1e-3 / (y[i] * y[i]));
+      const double bend = 2.0 * (1.0 - u) / (y[i] * y[i]);
+      EXPECT_NEAR(at.hessian.Diagonal(i), bend, 1e-3 / std::pow(y[i], 4));
     }
     EXPECT_LT(CheckDerivatives(view, y).worst(), 1e-3);
   }
@@ -302,6 +303,14 @@ TEST(BatchTerm, DifferencesKeepToTheBounds) {
     const double slope = 8.0 * (std::log(0.25) - 1.0);
     EXPECT_NEAR(at.gradient[0], width > 0.0 ? slope : 0.0, 1e-5) << width;
   }
+  // Beyond its bounds a point has slopes, too.
+  const Problem narrow = BoundedLogarithms({0.5, 0.5}, {1.0, 1.0});
+  const View beyond(narrow);
+  ViewEvaluation at;
+  beyond.Resize(&at);
+  const Eigen::Vector2d y(2.0, 0.3);
+  ASSERT_TRUE(beyond.Evaluate(y.data(), {.gradient = true}, {}, &at));
+  EXPECT_NEAR(at.gradient[0], std::log(2.0) - 1.0, 1e-9);
   for (const char* backend : {"banded", "lbfgs", "ipopt", "nlopt-lbfgs", "nlopt-slsqp"}) {
     const Problem problem = BoundedLogarithms({0.25, 0.25}, {4.0, 2.0});
     const View view(problem);
