@@ -15,7 +15,6 @@
 #include "evaluation/campaign/trial_columns.h"
 #include "evaluation/scenario/scenario_world.h"
 #include "sim/base/input_file.h"
-#include "touchdown/planning/map/persistent_map.h"
 
 namespace touchdown::evaluation {
 namespace {
@@ -43,7 +42,7 @@ class ScenarioHashes {
  private:
   const std::string& OfMap(const std::string& path) {
     const auto [at, fresh] = maps_.try_emplace(path);
-    if (fresh) at->second = HashOf(sim::ReadInputFile(path, planning::kMostMapBytes));
+    if (fresh) at->second = HashOf(sim::ReadInputFile(path, sim::kMostInputBytes));
     return at->second;
   }
   std::map<std::string, std::string> scenarios_;

@@ -14,8 +14,8 @@
 
 #include "evaluation/base/bad_input.h"
 #include "evaluation/base/suggestion.h"
-#include "evaluation/base/yaml_text.h"
 #include "evaluation/scenario/scenario_value.h"
+#include "evaluation/scenario/yaml_text.h"
 
 namespace touchdown::evaluation {
 namespace {

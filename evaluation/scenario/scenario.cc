@@ -16,11 +16,11 @@
 #include "evaluation/base/sqlite_db.h"
 #include "evaluation/base/suggestion.h"
 #include "evaluation/base/words.h"
-#include "evaluation/base/yaml_text.h"
 #include "evaluation/scenario/obstacle_keys.h"
 #include "evaluation/scenario/scenario_check.h"
 #include "evaluation/scenario/scenario_schema.h"
 #include "evaluation/scenario/scenario_world.h"
+#include "evaluation/scenario/yaml_text.h"
 
 namespace touchdown::evaluation {
 namespace {

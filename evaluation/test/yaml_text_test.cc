@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "evaluation/base/yaml_text.h"
+#include "evaluation/scenario/yaml_text.h"
 
 #include <fstream>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // yaml-cpp loads without bounds, and YAML::LoadAll does not come to an end at a comma between documents. So the text is
 // walked first, without keeping a node.
-#include "evaluation/base/yaml_text.h"
+#include "evaluation/scenario/yaml_text.h"
 
 #include <sstream>
 #include <stdexcept>
