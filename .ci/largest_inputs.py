@@ -5,6 +5,7 @@
     .ci/largest_inputs.py [FOLDER]    makes the inputs there (0.7 GB), prints a table for docs/results
 """
 import math
+import os
 import resource
 import struct
 import subprocess
@@ -36,7 +37,7 @@ def waypoints(path):
     return ["land", "open", "--set", "pad.motion=waypoints", "--set", f"pad.waypoints={path}", *SHORT]
 
 
-def leaves(depth, per_leaf, free_share):
+def leaves(depth, per_leaf):
     """The bytes of a full tree in OctoMap's .bt, depth first, and its nodes."""
     last = struct.pack("<H", per_leaf)
     nodes, body = 9, last
@@ -54,7 +55,7 @@ def deep(body, nodes, levels):
 
 
 def octomap(path, depth, pattern):
-    body, nodes = leaves(depth, pattern, 0)
+    body, nodes = leaves(depth, pattern)
     body, nodes = deep(body, nodes, 16 - depth)
     path.write_bytes(f"# Octomap OcTree binary file\nid OcTree\nsize {nodes}\nres 0.1\ndata\n".encode() + body)
 
@@ -131,7 +132,7 @@ def main():
         child = subprocess.Popen([PROGRAM, *map(str, command)], cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
                                  preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CORE, (0, 0)))
         said = child.stderr.read().decode("utf-8", "replace")
-        _, _, usage = __import__("os").wait4(child.pid, 0)
+        _, _, usage = os.wait4(child.pid, 0)
         print(f"| {name} | {path.stat().st_size / 1e6:.1f} | {time.monotonic() - begin:.1f} | {usage.ru_maxrss / 1024:.0f} | "
               f"{said.strip().splitlines()[-1][:150] if said.strip() else 'read'} |", flush=True)
 
