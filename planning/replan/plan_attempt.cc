@@ -18,6 +18,7 @@
 #include <utility>
 
 #include "planning/certify/pad_strip.h"
+#include "planning/replan/replan_checks.h"
 #include "touchdown/planning/replan/stage_timer.h"
 
 namespace touchdown::planning {
@@ -429,6 +430,7 @@ ReplanReason PlanAttempt::Solve(const AttemptRequest& request, const Posed& pose
   if (!prepared.solver.usable()) return ReplanReason::kSolverFailed;
   prepared.start.y = prepared.solver.x;
   problem.Curve(prepared.start.y, &candidate->pair.curve);
+  if (!IsWalkable(candidate->pair.curve)) return ReplanReason::kSolverFailed;
   if (!candidate->pairs.empty()) binder_.Remember(candidate->pair.curve, &candidate->bound);
   candidate->solved = true;
   {

@@ -10,7 +10,7 @@ namespace touchdown::planning {
 namespace {
 
 // Numbers beyond these count as faults.
-constexpr double kFastest = 1e3;   // [m/s]
+constexpr double kFastest = 1e3;   // [m/s], [m/s^2]
 constexpr int kMostPairs = 1000;   // of a control point: each has its storage
 
 bool Near(const Eigen::Vector3d& p) { return p.cwiseAbs().maxCoeff() < kFarthestPlace; }
@@ -45,21 +45,24 @@ const char* WrongInState(const ReplanInput& input) {
   return Plausible(input.margins) ? nullptr : "a margin is not finite, or below 0";
 }
 
-const char* WrongInPad(const ReplanInput& input) {
+const char* WrongInPad(const ReplanInput& input, double horizon) {
   if (input.pad == nullptr) return "there is no pad and no goal";
-  const estimation::PadState pad = input.pad->At(input.t_start);
-  if (!pad.p_WP.allFinite() || !pad.v_WP.allFinite())
-    return "the pad or goal is not finite at t_start";
-  if (!std::isfinite(pad.yaw)) return "the pad's yaw is not finite";
-  if (!pad.cov_p.allFinite()) return "the pad's covariance is not finite";
-  if (!Near(pad.p_WP)) {
-    return "the pad or goal is a million metres away or farther: subtract an origin near the "
-           "flight from all positions";
+  for (const double t : {input.t_start, input.t_start + horizon}) {
+    const estimation::PadState pad = input.pad->At(t);
+    if (!pad.p_WP.allFinite() || !pad.v_WP.allFinite()) return "the pad or goal is not finite";
+    if (!std::isfinite(pad.yaw)) return "the pad's yaw is not finite";
+    if (!pad.cov_p.allFinite()) return "the pad's covariance is not finite";
+    if (!Near(pad.p_WP)) {
+      return "the pad or goal is a million metres away or farther: subtract an origin near the "
+             "flight from all positions";
+    }
+    if (!Slow(pad.v_WP)) return "the pad or goal moves with 1000 m/s or faster";
+    if (!Slow(pad.a_WP)) return "the pad or goal accelerates with 1000 m/s^2 or more";
   }
-  return Slow(pad.v_WP) ? nullptr : "the pad or goal moves with 1000 m/s or faster";
+  return nullptr;
 }
 
-const char* WrongInTarget(const ReplanInput& input) {
+const char* WrongInTarget(const ReplanInput& input, double horizon) {
   const EndpointTarget& end = input.endpoint;
   for (const double number : {end.t_reference, end.height, end.sink_rate, end.height_floor}) {
     if (!std::isfinite(number)) return "a number of the endpoint is not finite";
@@ -67,7 +70,15 @@ const char* WrongInTarget(const ReplanInput& input) {
   if (!(end.arrival_sink >= 0.0) || !std::isfinite(end.arrival_sink)) {
     return "endpoint.arrival_sink is not finite, or below 0";
   }
-  return end.passing_W.allFinite() ? WrongInPad(input) : "endpoint.passing_W is not finite";
+  return end.passing_W.allFinite() ? WrongInPad(input, horizon)
+                                   : "endpoint.passing_W is not finite";
+}
+
+bool IsWalkable(const UniformBspline& curve) {
+  const auto points = curve.control_points();
+  const Eigen::Index steps = points.cols() - 1;
+  const double longest = (points.rightCols(steps) - points.leftCols(steps)).cwiseAbs().maxCoeff();
+  return longest < kFastest * curve.interval();
 }
 
 void Validate(const ReplannerOptions& o) {

@@ -14,10 +14,14 @@ void Validate(const ReplannerOptions& options);
 /// The times and the vehicle's state can be used: finite, ordered, and within a vehicle's possible range and speed.
 const char* WrongInState(const ReplanInput& input);
 
-/// The pad is known, and its state at the start can be used.
-const char* WrongInPad(const ReplanInput& input);
+/// The pad is known, and its states at the start and `horizon` [s] after it can be used: a plan may end at each time
+/// between.
+const char* WrongInPad(const ReplanInput& input, double horizon);
 
 /// The pad and the endpoint can be used.
-const char* WrongInTarget(const ReplanInput& input);
+const char* WrongInTarget(const ReplanInput& input, double horizon);
+
+/// The curve is slower than a fault, so that its cells are few enough to be walked one by one. Does not allocate.
+bool IsWalkable(const UniformBspline& curve);
 
 }  // namespace touchdown::planning

@@ -293,7 +293,7 @@ const ReplanResult& Replanner::Impl::Replan(const ReplanInput& input, const Occu
   NoteAsked(input.t_start);
   const SplineState start = Start(input);
   fallback_.ForgetClimb();
-  const char* wrong = WrongInTarget(input);
+  const char* wrong = WrongInTarget(input, options_.max_duration);
   const bool target_valid = wrong == nullptr;
   if (wrong) result_.detail = wrong;
   const bool looks = target_valid && fallback_.StillLooks(map, result_.from_odometry);
@@ -360,10 +360,12 @@ const ReplanResult& Replanner::Impl::Rest(const ReplanInput& input, double climb
   if (const char* wrong = WrongInState(input)) return RefuseState(input, wrong);
   NoteAsked(input.t_start);
   const SplineState start = Start(input);
-  const bool remembered = input.t_start - strip_t_ <= kStripMemory || WrongInTarget(input);
+  const bool remembered =
+      input.t_start - strip_t_ <= kStripMemory || WrongInTarget(input, options_.max_duration);
   const FreeSpace space = remembered ? SpaceWithoutPad(input, map)
                                      : SpaceOverPad(input, start, WatchedUntil(input), map);
-  const HullSpace hull = HullIn(space, WrongInPad(input) ? nullptr : DeckOf(input));
+  const HullSpace hull =
+      HullIn(space, WrongInPad(input, options_.max_duration) ? nullptr : DeckOf(input));
   return Finish(fallback_.Rest(FactsFor(input, start, hull), climb, &result_), input.t_start);
 }
 

@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "planning/replan/replan_checks.h"
 #include "planning/test/replanner_fixtures.h"
 #include "touchdown/planning/replan/span_log.h"
 
@@ -223,6 +224,23 @@ TEST(Replanner, SegmentsAreAsShortAsTheOptionSays) {
   EXPECT_THROW(Replanner(none, solvers::StandardBackends()), std::invalid_argument);
 }
 
+/// Near and slow when it is asked first: it runs away, or turns on the spot too fast to be followed.
+class FaultyPad : public ArcPad {
+ public:
+  FaultyPad(double acceleration, double turn)
+      : ArcPad({5.0, 0.0, 0.3}, 0.5, 0.0, turn), acceleration_(acceleration) {}
+  estimation::PadState At(double t) const noexcept override {
+    estimation::PadState state = ArcPad::At(t);
+    state.p_WP.x() += 0.5 * acceleration_ * t * t;
+    state.v_WP.x() += acceleration_ * t;
+    state.a_WP.x() += acceleration_;
+    return state;
+  }
+
+ private:
+  double acceleration_;
+};
+
 TEST(Replanner, NamesWhyThereIsNoPlan) {
   const ArcPad pad({5.0, 0.0, 0.3}, 0.5, 0.0, 0.0);
   const ArcPad racing({5.0, 0.0, 0.3}, 6.0, 0.0, 0.0);
@@ -238,6 +256,7 @@ TEST(Replanner, NamesWhyThereIsNoPlan) {
 
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const ArcPad nowhere({nan, 0.0, 0.3}, 0.0, 0.0, 0.0), away({5e6, 0.0, 0.3}, 0.0, 0.0, 0.0);
+  const FaultyPad fleeing(-900.0, 0.0), vanishing(-9e18, 0.0), spinning(0.0, 9e18);
   const struct {
     const char* what;
     void (*spoil)(ReplanInput* input, double nan);
@@ -260,6 +279,9 @@ TEST(Replanner, NamesWhyThereIsNoPlan) {
       {"goal is not finite", [](ReplanInput*, double) {}, &nowhere},
       {"goal is a million metres away or farther: subtract an origin", [](ReplanInput*, double) {},
        &away},
+      {"goal moves with 1000 m/s", [](ReplanInput*, double) {}, &fleeing},
+      {"goal is a million metres away", [](ReplanInput*, double) {}, &vanishing},
+      {"goal accelerates with 1000 m/s^2", [](ReplanInput*, double) {}, &spinning},
       {"endpoint", [](ReplanInput* input, double none) { input->endpoint.height = none; }, &pad},
       {"arrival_sink", [](ReplanInput* input, double) { input->endpoint.arrival_sink = -1.0; },
        &pad},
@@ -485,6 +507,14 @@ TEST(Replanner, APlanThatEndsInACreepIsNotFlownPastItsEnd) {
     EXPECT_FALSE(map.IsBlocked(at.p_WB)) << "at " << t;
   }
   EXPECT_LT(replanner.Reference(40.0).v_WB.norm(), 1e-9);
+}
+
+TEST(Replanner, WalksNoCurveThatIsFasterThanAFault) {
+  ControlPoints points = ControlPoints::Zero(3, 8);
+  points(1, 7) = 199.0;
+  EXPECT_TRUE(IsWalkable(UniformBspline(points, 0.2, 0.0)));
+  points(1, 7) = -201.0;
+  EXPECT_FALSE(IsWalkable(UniformBspline(points, 0.2, 0.0)));
 }
 
 TEST(Replanner, OneAnswerIsPendingAtATime) {

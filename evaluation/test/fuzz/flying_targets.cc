@@ -34,17 +34,19 @@ class Pad : public estimation::PadPrediction {
   explicit Pad(Choices* choices)
       : p_{choices->Wild(-8.0, 8.0), choices->Wild(-8.0, 8.0), choices->Wild(0.0, 3.0)},
         v_{choices->Wild(-3.0, 3.0), choices->Wild(-3.0, 3.0), 0.0},
+        a_{choices->Below(4) == 0 ? choices->Wild(-1.0, 1.0) : 0.0, 0.0, 0.0},
         sigma_(choices->Wild(0.0, 0.5)) {}
   estimation::PadState At(double t) const noexcept override {
     estimation::PadState state;
-    state.p_WP = p_ + t * v_;
-    state.v_WP = v_;
+    state.p_WP = p_ + t * v_ + 0.5 * t * t * a_;
+    state.v_WP = v_ + t * a_;
+    state.a_WP = a_;
     state.cov_p = sigma_ * sigma_ * Eigen::Matrix2d::Identity();
     return state;
   }
 
  private:
-  Vector3d p_, v_;
+  Vector3d p_, v_, a_;
   double sigma_;
 };
 

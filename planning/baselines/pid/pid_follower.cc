@@ -99,7 +99,7 @@ void PidFollower::Commit(const SplineState& start, const Eigen::Vector3d& a, dou
 const ReplanResult& PidFollower::Replan(const ReplanInput& input, const OccupancyMap& /*map*/) {
   if (!Begin(input)) return result_;
   StageTimer total(&result_.times.total);
-  if (WrongInTarget(input)) {
+  if (WrongInTarget(input, 0.0)) {
     result_.reason = ReplanReason::kInvalidInput;
     return result_;
   }
