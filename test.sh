@@ -5,7 +5,7 @@
 #   ./test.sh quick     the unit tests: minutes, for who changes the code
 #   ./test.sh deep      sanitizers, another compiler, clang-tidy, fuzzers: two hours; parts by name: address, tidy, threads, fuzz
 #   ./test.sh fuzz      files, measurements, maps as nobody would write them, 60 s of each kind: fuzz [SECONDS] [TARGET...]
-#   ./test.sh inputs    broken files and command lines through the program: inputs [--count N] [KIND...]
+#   ./test.sh inputs    broken files and command lines through the program: inputs [--count N] [KIND...]; inputs largest
 #   ./test.sh wasm      the planner in a page: build/wasm/playground.html, and its tests; needs 0.8 GB more
 #   ./test.sh bare      the Debian package in a bare Debian 12, the source in a bare Debian 12 and 13; parts by name: deb, source
 #   ./test.sh mutants   whether the tests notice changes of what must be right: an hour
@@ -24,6 +24,7 @@ case ${1:-} in
   inputs)
     install_tiers build
     build_release OFF touchdown
+    if [ "${2:-}" = largest ]; then exec .ci/largest_inputs.py "${@:3}"; fi
     exec .ci/mutated_inputs.py "${@:2}"
     ;;
   wasm)

@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Memory and time of every reader on the largest input that it allows.
+"""Memory and time of each reader on the largest input that it allows; a table for docs/results/flight_software.
 
-    .ci/largest_inputs.py [FOLDER]    makes the inputs there (0.7 GB), prints a table for docs/results
+    .ci/largest_inputs.py [FOLDER]    makes the inputs there (0.2 GB); ends with 1 where one takes 4 GB, or a minute
+
+Airframe and study files are read as scenarios are.
 """
 import math
 import os
@@ -15,7 +17,7 @@ import zlib
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
-PROGRAM = ROOT / "build/release/bin/touchdown"
+PROGRAM = Path(os.environ.get("TOUCHDOWN_PROGRAM", ROOT / "build/release/bin/touchdown"))
 SHORT = ["--set", "timeout=1"]
 
 
@@ -61,7 +63,7 @@ def octomap(path, depth, pattern):
 
 
 def prior(path):
-    """2.4 million nodes a level of eight; 7 levels below the root and more on top."""
+    """Eight children a node on seven levels, 2.4 million nodes, below a chain of single ones."""
     octomap(path, 7, 0x5556)  # one occupied leaf in eight
     return ["land", "open", "--set", f"map.prior={path}", *SHORT]
 
@@ -104,13 +106,29 @@ def heights(path):
 
 def vehicle(path):
     text = (ROOT / "sim/models/quadrotor.xml").read_text()
-    many = "".join(f'<geom type="sphere" size="0.01" pos="0 0 {i * 1e-6:.6f}" contype="0" conaffinity="0" mass="0"/>\n' for i in range(140_000))
+    many = "".join(f'<geom type="sphere" size="0.01" pos="0 0 {i * 1e-6:.6f}" contype="0" conaffinity="0" mass="0"/>\n' for i in range(3940))
     path.write_text(text.replace("</body>", many + "</body>", 1))
     return ["check-vehicle", path]
 
 
+def plan(path):
+    """A study's plan of brackets alone."""
+    path.parent.mkdir(exist_ok=True)
+    path.write_text("[" * (4 << 20))
+    return ["study", "run", "paper", "--out", path.parent, "--report-only"]
+
+
+def trials(path):
+    """2,000 trials of a second."""
+    subprocess.run([PROGRAM, "sweep", "open", "--trials", "2000", "--set", "timeout=1", "--db", path, "--jobs", "2"], cwd=ROOT,
+                   capture_output=True, check=False)
+    merged = path.with_suffix(".merged.db")
+    merged.unlink(missing_ok=True)
+    return ["merge", merged, path]
+
+
 def record(path):
-    """The longest flight that there may be."""
+    """A flight of ten minutes."""
     subprocess.run([PROGRAM, "land", "straight_turn", "--set", "timeout=600", "--set", "pad.motion=stop_and_go", "--set", "tags.rate=0",
                     "--record", path], cwd=ROOT, capture_output=True, check=False)
     return ["replay", path, "--html", path.with_suffix(".html")]
@@ -118,13 +136,15 @@ def record(path):
 
 CASES = [("scenario", "big.yaml", million_values), ("waypoints", "way.csv", waypoints), ("map.prior", "prior.bt", prior),
          ("octomap", "cells.bt", cells), ("mesh", "ball.obj", mesh), ("height field", "heights.png", heights),
-         ("vehicle", "vehicle.xml", vehicle), ("record", "record.db", record)]
+         ("vehicle", "vehicle.xml", vehicle), ("study's plan", "plan/study.json", plan), ("trials", "trials.db", trials),
+         ("record", "record.db", record)]
 
 
 def main():
     folder = Path(sys.argv[1] if len(sys.argv) > 1 else "out/largest")
     folder.mkdir(parents=True, exist_ok=True)
     print("| reader | input [MB] | time [s] | memory [MB] | what it says |\n|---|---|---|---|---|")
+    status = 0
     for name, file, make in CASES:
         path = (folder / file).absolute()
         command = make(path)
@@ -132,9 +152,13 @@ def main():
         child = subprocess.Popen([PROGRAM, *map(str, command)], cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
                                  preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CORE, (0, 0)))
         said = child.stderr.read().decode("utf-8", "replace")
-        _, _, usage = os.wait4(child.pid, 0)
-        print(f"| {name} | {path.stat().st_size / 1e6:.1f} | {time.monotonic() - begin:.1f} | {usage.ru_maxrss / 1024:.0f} | "
+        _, ended, usage = os.wait4(child.pid, 0)
+        took, memory = time.monotonic() - begin, usage.ru_maxrss / 1024
+        if took > 60.0 or memory > 4000.0 or os.WIFSIGNALED(ended):
+            status = 1
+        print(f"| {name} | {path.stat().st_size / 1e6:.1f} | {took:.1f} | {memory:.0f} | "
               f"{said.strip().splitlines()[-1][:150] if said.strip() else 'read'} |", flush=True)
+    return status
 
 
 if __name__ == "__main__":

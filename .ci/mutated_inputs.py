@@ -9,6 +9,7 @@ for 2 with one sentence that names the file. Prints a row for each kind, and eve
 """
 import argparse
 import concurrent.futures
+import os
 import random
 import re
 import resource
@@ -22,7 +23,7 @@ import zlib
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
-PROGRAM = ROOT / "build/release/bin/touchdown"
+PROGRAM = Path(os.environ.get("TOUCHDOWN_PROGRAM", ROOT / "build/release/bin/touchdown"))
 WORLDS, VEHICLES = ROOT / "docs/examples/worlds", ROOT / "docs/examples/vehicles"
 MEMORY, TIME = 4_000_000 << 10, 10.0
 # What no sentence holds.
@@ -54,8 +55,11 @@ def mutated_bytes(data, rng):
     return bytes(data)
 
 
+TEXT_BOMB = [b"zTXt", b"k\0\0" + zlib.compress(bytes(8_000_000), 9)]
+
+
 def mutated_png(data, rng):
-    """A chunk is another one, and its checksum is right."""
+    """A chunk is another one, and its checksum is right; or there are texts that expand to gigabytes."""
     chunks, at = [], 8
     while at < len(data):
         size = int.from_bytes(data[at:at + 4], "big")
@@ -63,7 +67,9 @@ def mutated_png(data, rng):
         at += 12 + size
     for _ in range(rng.choice([1, 2])):
         chunk = chunks[0] if rng.random() < 0.4 else rng.choice(chunks)
-        if rng.random() < 0.2:
+        if rng.random() < 0.1:
+            chunks[1:1] = [TEXT_BOMB] * 300
+        elif rng.random() < 0.2:
             chunks.insert(rng.randrange(len(chunks) + 1), [rng.choice([b"tEXt", b"PLTE", b"zTXt", b"IDAT", chunk[0]]), rng.randbytes(40)])
         elif chunk[0] == b"IDAT" and rng.random() < 0.7:
             chunk[1] = zlib.compress(rng.randbytes(rng.choice([0, 100, 200_000])))
@@ -110,7 +116,8 @@ def mutated_database(path, rng):
             try:
                 columns = [row[1] for row in db.execute(f"PRAGMA table_info({table})")]
                 column = rng.choice(columns)
-                where = f"WHERE rowid IN (SELECT rowid FROM {table} ORDER BY random() LIMIT {rng.choice([1, 3, 1000])})"
+                rows = [str(row[0]) for row in db.execute(f"SELECT rowid FROM {table}")]
+                where = f"WHERE rowid IN ({', '.join(rng.sample(rows, min(len(rows), rng.choice([1, 3, 1000]))))})"
                 value = rng.choice([None, 0, -1, 1, 2**31, 2**63 - 1, -2**63, 1e308, float("inf"), "", "x", b"\xff\xfe", "1",
                                     "<b>", ",", "[" * 10000, "{\"a\": 1}", "x" * 100000])
                 what = rng.randrange(7)
@@ -125,6 +132,7 @@ def mutated_database(path, rng):
                         f"DROP TABLE {table}", f"ALTER TABLE {table} DROP COLUMN {column}",
                         f"ALTER TABLE {table} RENAME COLUMN {column} TO x",
                         f"ALTER TABLE {table} RENAME TO x", f"CREATE TABLE IF NOT EXISTS zz AS SELECT * FROM {table}",
+                        f"ALTER TABLE {table} ADD COLUMN zz TEXT GENERATED ALWAYS AS (hex(zeroblob(1000000000))) VIRTUAL",
                         f"CREATE TRIGGER trap BEFORE INSERT ON {table} BEGIN SELECT RAISE(FAIL, 'trap'); END"]))
                     if rng.random() < 0.3:
                         db.execute(f"CREATE VIEW {table} AS WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n) "
@@ -142,15 +150,37 @@ class Inputs:
                         ["sweep", "open", "--trials", "4", "--vary", "pad.speed=0.5,1", "--db", self.sweep, *SHORT]):
             subprocess.run([PROGRAM, *command], cwd=ROOT, capture_output=True, check=False)
         for path in (self.record, self.sweep):
+            if not path.exists():
+                raise SystemExit(f"{path.name} was not written")
             with sqlite3.connect(path) as db:
                 db.execute("PRAGMA journal_mode=DELETE")
+
+
+# What would be opened, inflated, or multiplied, if a reader followed it.
+TRAPS = {
+    ".xml": ['<include file="/dev/zero"/>', '<include file="input.xml"/>', '<asset><mesh name="trap" file="fifo"/></asset>',
+             '<asset><texture name="trap" type="2d" builtin="flat" width="60000" height="60000"/></asset>',
+             '<asset><hfield name="trap" size="1 1 1 1" nrow="30000" ncol="30000"/></asset>', '<size nconmax="2000000000"/>',
+             '<worldbody>' + '<geom size="1"/>' * 10000 + '</worldbody>',
+             '<worldbody><body><composite type="grid" count="300 300 1" spacing="0.1"><geom size="0.02"/></composite></body></worldbody>'],
+    ".obj": ["mtllib fifo\n", "mtllib /dev/zero\n", "f 1 2 3\n" * 100000, "usemtl x\nmap_Kd fifo\n"],
+}
+
+
+def with_trap(text, suffix, rng):
+    at = text.rfind("</mujoco>") if suffix == ".xml" else text.find("\n") + 1
+    return text[:at] + rng.choice(TRAPS[suffix]) + text[at:]
 
 
 def text_kind(files, suffix, command):
     def make(inputs, folder, rng):
         path = folder / ("input" + suffix)
         text = rng.choice(files).read_text(encoding="latin-1")
-        path.write_bytes(mutated_text(text, rng).encode("latin-1", "replace"))
+        if suffix in TRAPS and rng.random() < 0.2:
+            text = with_trap(text, suffix, rng)
+        else:
+            text = mutated_text(text, rng)
+        path.write_bytes(text.encode("latin-1", "replace"))
         return path, command(path, rng)
     return make
 
@@ -160,10 +190,12 @@ def bytes_kind(files, command):
         source = rng.choice(files)
         path = folder / ("input" + source.suffix)
         data = source.read_bytes()
-        if source.suffix in (".obj", ".ply") and rng.random() < 0.7:
-            data = mutated_text(data.decode("latin-1"), rng).encode("latin-1", "replace")
+        if source.suffix == ".obj":
+            text = data.decode("latin-1")
+            text = with_trap(text, ".obj", rng) if rng.random() < 0.2 else mutated_text(text, rng)
+            data = text.encode("latin-1", "replace")
         change = mutated_png if source.suffix == ".png" and rng.random() < 0.8 else mutated_bytes
-        path.write_bytes(change(data, rng))
+        path.write_bytes(data if source.suffix == ".obj" and rng.random() < 0.7 else change(data, rng))
         return path, command(path, rng)
     return make
 
@@ -192,7 +224,7 @@ def airframe(inputs, folder, rng):
     shutil.copy(VEHICLES / f"{name}.xml", folder / "input.xml")
     path = folder / "input.airframe.yaml"
     path.write_bytes(mutated_text(vehicle.read_text(encoding="latin-1"), rng).encode("latin-1", "replace"))
-    return None, ["land", "open", "--set", f"vehicle={folder / 'input.xml'}", *SHORT]
+    return path, ["land", "open", "--set", f"vehicle={folder / 'input.xml'}", *SHORT]
 
 
 def study(inputs, folder, rng):
@@ -286,9 +318,11 @@ def run_one(kind, number, seed, inputs, keep):
     rng = random.Random(f"{seed} {kind} {number}")
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
+        os.mkfifo(folder / "fifo")
         path, command = KINDS[kind](inputs, folder, rng)
         fault, took, status = fault_of(command, path)
         if fault and keep:
+            (folder / "fifo").unlink()
             shutil.copytree(folder, Path(keep) / f"{kind.replace(' ', '_')}_{number}", dirs_exist_ok=True)
         return number, fault, took, status, " ".join(map(str, command))
 

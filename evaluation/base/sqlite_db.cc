@@ -138,7 +138,7 @@ void RethrowNaming(const std::string& path, const char* what) {
     throw BadInput(
         fmt::format("{}: not a {} that this build reads ({}).", path, what, error.what()));
   } catch (const nlohmann::json::exception&) {
-    throw BadInput(fmt::format("{}: its tables lack a figure.", path));
+    throw BadInput(fmt::format("{}: a text in its tables lacks a figure, or is no JSON.", path));
   } catch (const std::invalid_argument& error) {
     throw BadInput(fmt::format("{}: {}.", path, error.what()));
   }
@@ -164,7 +164,20 @@ SqliteDb::SqliteDb(const std::string& path, Mode mode) {
   sqlite3_db_config(db_, SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);
   sqlite3_db_config(db_, SQLITE_DBCONFIG_ENABLE_TRIGGER, 0, nullptr);
   sqlite3_limit(db_, SQLITE_LIMIT_LENGTH, kMostLength);
-  if (mode == Mode::kReadOnly) Execute("PRAGMA query_only=ON");
+  try {
+    if (mode == Mode::kReadOnly) Execute("PRAGMA query_only=ON");
+    if (mode != Mode::kCreate) RefuseComputedColumns();
+  } catch (...) {
+    sqlite3_close(db_);
+    throw;
+  }
+}
+
+void SqliteDb::RefuseComputedColumns() {
+  SqliteStatement computed = Prepare(
+      "SELECT t.name FROM sqlite_master AS t, pragma_table_xinfo(t.name) AS c "
+      "WHERE t.type = 'table' AND c.hidden <> 0");
+  if (computed.Step()) throw SqliteError("its table " + computed.Text(0) + " computes its columns");
 }
 
 SqliteDb::~SqliteDb() { sqlite3_close(db_); }

@@ -93,8 +93,8 @@ class SqliteDb {
  public:
   enum class Mode { kReadOnly, kReadWrite, kCreate };
 
-  /// `path` may be ":memory:". Another process that is just writing is waited for, 10 s at most. Views and triggers of
-  /// the file, which could run without end, do not.
+  /// `path` may be ":memory:". Another process that is just writing is waited for, 10 s at most. What
+  /// could run without end does not: views and triggers of the file do not work, computed columns are refused.
   /// @throws SqliteError when the file cannot be opened or created, or is no regular one.
   SqliteDb(const std::string& path, Mode mode);
   ~SqliteDb();
@@ -107,6 +107,8 @@ class SqliteDb {
   SqliteStatement Prepare(std::string_view sql) { return SqliteStatement(db_, sql); }
 
  private:
+  void RefuseComputedColumns();
+
   sqlite3* db_ = nullptr;
 };
 

@@ -35,6 +35,8 @@ const std::string* Nearest(const Parts& word, const std::vector<std::string>& na
     const Parts parts = Split(name, '.');
     const std::optional<std::size_t> at = TheOneThatDiffers(word, parts);
     if (!at || (*at + 1 == word.size()) != same_group) continue;
+    if (word[*at].size() > parts[*at].size() + kMostErrors)
+      continue;  // its distance would take long
     const int distance = EditDistance(word[*at], parts[*at]);
     const int most =
         std::clamp(static_cast<int>(word[*at].size()) / kLettersPerTypo, 1, kMostErrors);

@@ -76,11 +76,6 @@ std::string OtherLine(const std::string& there, const std::string& here) {
   }
 }
 
-std::string Fact(const Manifest& manifest, const std::string& key) {
-  const auto at = manifest.find(key);
-  return at == manifest.end() ? "" : at->second;
-}
-
 // The first of `keys` which the two say differently, in words; empty: none.
 std::string FirstOther(const Manifest& there, const Manifest& here,
                        std::initializer_list<const char*> keys) {
@@ -96,16 +91,33 @@ std::string FirstOther(const Manifest& there, const Manifest& here,
   return {};
 }
 
+// Trials 0 to n - 1, each in a cell of the plan, or a shard of them.
+bool IsWhole(SqliteDb& db, const Manifest& manifest) {
+  SqliteStatement plan = db.Prepare(
+      "SELECT count(*), min(trial), max(trial) FROM planned "
+      "WHERE cell IN (SELECT cell FROM cell)");
+  plan.Step();
+  const std::int64_t trials = plan.Integer(0);
+  if (std::to_string(trials) != Fact(manifest, "trials")) return false;
+  if (Fact(manifest, "shard").empty()) return false;
+  return trials == 0 || (plan.Integer(1) == 0 && plan.Integer(2) == trials - 1);
+}
+
 // With their columns, in SQL. Statistics that SQLite keeps do not count.
 std::set<std::string> TablesOf(SqliteDb& db) {
   std::set<std::string> tables;
   SqliteStatement rows =
-      db.Prepare("SELECT sql FROM sqlite_master WHERE sql NOT NULL AND name NOT LIKE 'sqlite_%'");
+      db.Prepare("SELECT sql FROM sqlite_master WHERE sql NOT NULL AND name NOT GLOB 'sqlite_*'");
   while (rows.Step()) tables.insert(rows.Text(0));
   return tables;
 }
 
 }  // namespace
+
+std::string Fact(const Manifest& manifest, const std::string& key) {
+  const auto at = manifest.find(key);
+  return at == manifest.end() ? "" : at->second;
+}
 
 ManifestFacts FactsOf(const Campaign& campaign, const Shard& shard) {
   ManifestFacts facts = {{"campaign", campaign.name},
@@ -143,6 +155,10 @@ Manifest ReadManifest(SqliteDb& db, const std::string& path) {
   FillResultFile(like, kTrialFormat, TrialSchema().c_str(), {}, [](SqliteDb&) {});
   if (TablesOf(db) != TablesOf(like)) {
     throw BadInput(fmt::format("{}: its tables are not those of a file of trials.", path));
+  }
+  if (!IsWhole(db, manifest)) {
+    throw BadInput(
+        fmt::format("{}: its plan is not that of {} trials.", path, Fact(manifest, "trials")));
   }
   return manifest;
 }

@@ -23,6 +23,9 @@ std::string CampaignHash(const Campaign& campaign);
 /// By key.
 using Manifest = std::map<std::string, std::string>;
 
+/// Empty where the manifest lacks it.
+std::string Fact(const Manifest& manifest, const std::string& key);
+
 /// The manifest of the file at `path`. @throws BadInput if it is no file of trials, or of another version.
 Manifest ReadManifest(SqliteDb& db, const std::string& path);
 

@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr char kFlights[] = "flights";
-constexpr std::size_t kMostPlanBytes = 64 << 20;
+constexpr std::size_t kMostPlanBytes = 4 << 20;
 
 void MakeFolder(const std::string& folder) {
   std::error_code error;
@@ -38,7 +38,8 @@ std::string PlanPath(const std::string& folder) { return folder + "/study.json";
 
 // How the trials that are there were flown.
 Json FlightsBefore(const std::string& folder) {
-  if (!fs::exists(PlanPath(folder))) return Json::array();
+  std::error_code unknown;
+  if (!fs::exists(PlanPath(folder), unknown)) return Json::array();
   const Json before = ReadStudyPlan(folder);
   return before.contains(kFlights) ? before[kFlights] : Json::array();
 }

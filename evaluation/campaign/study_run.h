@@ -20,7 +20,7 @@ namespace touchdown::evaluation {
 CampaignResult FlyStudy(const StudyPlan& plan, const std::string& folder, CampaignOptions options,
                         Recorded which, const Registries& registries);
 
-/// The plan in a study's folder, of 64 MiB at most. @throws BadInput
+/// The plan in a study's folder, of 4 MiB at most. @throws BadInput
 nlohmann::ordered_json ReadStudyPlan(const std::string& folder);
 
 /// Where the trials of a study are.

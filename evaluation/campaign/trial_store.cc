@@ -80,8 +80,8 @@ void CheckIsThis(SqliteDb& db, const std::string& path, const Campaign& campaign
   for (const auto& [key, value] : FactsOf(campaign, shard)) here[key] = value;
   for (const auto& [key, value] : BuildManifest()) here[key] = value;
   std::string words = Difference(there, here);
-  if (words.empty() && there.at("shard") != shard.ToString()) {
-    words = fmt::format("its shard is {}, not {}", there.at("shard"), shard.ToString());
+  if (words.empty() && Fact(there, "shard") != shard.ToString()) {
+    words = fmt::format("its shard is {}, not {}", Fact(there, "shard"), shard.ToString());
   }
   if (words.empty()) return;
   throw BadInput(fmt::format("{}: it holds trials of another sweep: {}.", path, words));

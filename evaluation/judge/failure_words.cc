@@ -49,10 +49,10 @@ std::string GateSentence(const TrialResult& result, std::string_view last) {
   closed.erase(open);
   if (closed.empty()) return {};
   const bool ever = result.gate_steps.contains(open);
-  const double share = static_cast<double>(Sum(closed)) / Sum(result.gate_steps);
   std::string text = fmt::format(
       " The landing condition was {}, {}",
-      ever ? fmt::format("closed for {:.0f} % of the time", 100.0 * share) : "never open",
+      ever ? fmt::format("closed in {} of {} steps", Sum(closed), Sum(result.gate_steps))
+           : "never open",
       Most("for", closed));
   if (last == open) {
     text += ", and open at the end";

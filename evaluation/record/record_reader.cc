@@ -445,10 +445,11 @@ RecordedFlight ReadAll(const std::string& path, const std::vector<std::string>& 
 RecordedFlight ReadRecord(const std::string& path, const std::vector<std::string>& overrides,
                           const Registries& registries) {
   CheckOverrides(overrides);
-  if (!std::filesystem::is_regular_file(path)) {
+  std::error_code unknown;
+  if (!std::filesystem::is_regular_file(path, unknown)) {
     throw BadInput(fmt::format("{}: there is no such record.", path));
   }
-  if (std::filesystem::file_size(path) > kMostBytesOfRecord) {
+  if (std::filesystem::file_size(path, unknown) > kMostBytesOfRecord) {
     throw BadInput(fmt::format("{}: it is larger than the 512 MiB that are read.", path));
   }
   return NamingFile(path, "record", [&] { return ReadAll(path, overrides, registries); });

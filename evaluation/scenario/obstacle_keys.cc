@@ -114,7 +114,7 @@ const ElementKeys<WallObstacle>& WallKeys() {
 const ElementKeys<MeshObstacle>& MeshKeys() {
   static const ElementKeys<MeshObstacle> keys = {
       FileKey<MeshObstacle>(
-          "closed surfaces of triangles: OBJ, STL, PLY and what else assimp reads"),
+          "closed surfaces of triangles: OBJ, STL, PLY, OFF, Collada (.dae), binary glTF (.glb)"),
       Optional(schema::Number<MeshObstacle>("scale", schema::Above(0, 1e6, ""),
                                             "metres to the file's unit of length",
                                             TOUCHDOWN_AT(scale))),

@@ -171,7 +171,8 @@ std::string WorldHash(const Scenario& scenario) {
     if constexpr (kIsFile<Element>) {
       for (const Element& spec : elements) {
         try {
-          bytes += sim::ReadInputFile(spec.file, sim::kMostInputBytes) + '\0';
+          bytes += sim::ReadInputFile(spec.file, sim::kMostInputBytes - bytes.size());
+          bytes += '\0';
         } catch (const std::invalid_argument& error) {
           throw BadInput(fmt::format("{}: {}.", name, error.what()));
         }

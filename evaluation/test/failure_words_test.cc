@@ -34,10 +34,10 @@ TEST(FailureWords, WhatTheLandingConditionLackedMostAndAtTheEnd) {
             " The landing condition was never open, for tags_unseen.");
   result.gate_steps = {{"no_pad", 100}, {"open", 200}, {"tags_unseen", 700}};
   EXPECT_EQ(GateSentence(result, "no_pad"),
-            " The landing condition was closed for 80 % of the time, most for tags_unseen, at the "
+            " The landing condition was closed in 800 of 1000 steps, most for tags_unseen, at the "
             "end for no_pad.");
   EXPECT_EQ(GateSentence(result, "open"),
-            " The landing condition was closed for 80 % of the time, most for tags_unseen, and "
+            " The landing condition was closed in 800 of 1000 steps, most for tags_unseen, and "
             "open at the end.");
 }
 

@@ -11,6 +11,7 @@ namespace {
 
 // Numbers beyond these count as faults.
 constexpr double kFastest = 1e3;   // [m/s], [m/s^2]
+constexpr double kLongest = 1e3;   // from now to the start [s]
 constexpr int kMostPairs = 1000;   // of a control point: each has its storage
 
 bool Near(const Eigen::Vector3d& p) { return p.cwiseAbs().maxCoeff() < kFarthestPlace; }
@@ -23,7 +24,7 @@ void Require(bool ok, const char* name, double value, const char* range) {
 }
 
 bool Plausible(const Margins& margins) {
-  const auto fine = [](double margin) { return std::isfinite(margin) && margin >= 0.0; };
+  const auto fine = [](double margin) { return margin >= 0.0 && margin < kFarthestPlace; };
   return fine(margins.own_state) && fine(margins.attitude) && fine(margins.tracking);
 }
 
@@ -34,6 +35,7 @@ const char* WrongInState(const ReplanInput& input) {
   if (!std::isfinite(input.t_now)) return "t_now is not finite";
   if (!std::isfinite(input.t_start)) return "t_start is not finite";
   if (input.t_start < input.t_now) return "t_start is before t_now";
+  if (input.t_start - input.t_now > kLongest) return "t_start is more than 1000 s after t_now";
   if (!vehicle.p_WB.allFinite()) return "vehicle.p_WB is not finite";
   if (!vehicle.v_WB.allFinite()) return "vehicle.v_WB is not finite";
   if (!Near(vehicle.p_WB)) {
@@ -42,7 +44,8 @@ const char* WrongInState(const ReplanInput& input) {
   }
   if (!Slow(vehicle.v_WB)) return "vehicle.v_WB is 1000 m/s or faster";
   if (!input.pull_W.allFinite()) return "pull_W is not finite";
-  return Plausible(input.margins) ? nullptr : "a margin is not finite, or below 0";
+  if (!Slow(input.pull_W)) return "pull_W is 1000 m/s^2 or more";
+  return Plausible(input.margins) ? nullptr : "a margin is below 0, or a million metres or more";
 }
 
 const char* WrongInPad(const ReplanInput& input, double horizon) {
@@ -70,8 +73,14 @@ const char* WrongInTarget(const ReplanInput& input, double horizon) {
   if (!(end.arrival_sink >= 0.0) || !std::isfinite(end.arrival_sink)) {
     return "endpoint.arrival_sink is not finite, or below 0";
   }
-  return end.passing_W.allFinite() ? WrongInPad(input, horizon)
-                                   : "endpoint.passing_W is not finite";
+  if (!end.passing_W.allFinite()) return "endpoint.passing_W is not finite";
+  if (const char* wrong = WrongInPad(input, horizon)) return wrong;
+  for (const double t : {input.t_start, input.t_start + horizon}) {
+    const SplineState state = EndStateAt(*input.pad, end, t).state;
+    if (!Near(state.p) || !Slow(state.v))
+      return "the endpoint is too far from the pad, or too fast";
+  }
+  return nullptr;
 }
 
 bool IsWalkable(const UniformBspline& curve) {

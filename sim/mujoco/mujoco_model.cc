@@ -11,9 +11,11 @@
 
 #include <array>
 #include <cstring>
+#include <filesystem>
 #include <mutex>
 #include <stdexcept>
 
+#include "sim/mujoco/mjcf_source.h"
 #include "sim/mujoco/mujoco_call.h"
 
 namespace touchdown::sim {
@@ -27,6 +29,14 @@ struct VfsDeleter {
     delete vfs;
   }
 };
+
+using Vfs = std::unique_ptr<mjVFS, VfsDeleter>;
+
+Vfs MakeVfs() {
+  Vfs vfs(new mjVFS);
+  mj_defaultVFS(vfs.get());
+  return vfs;
+}
 
 void AddText(const char* name, const std::string& text, mjVFS* vfs) {
   if (text.empty()) throw std::invalid_argument(std::string("MJCF: ") + name + " is empty");
@@ -60,14 +70,26 @@ void MujocoModelDeleter::operator()(mjModel_* model) const noexcept { mj_deleteM
 void MujocoDataDeleter::operator()(mjData_* data) const noexcept { mj_deleteData(data); }
 
 MujocoModel CompileMjcf(const std::string& mjcf, const std::string& vehicle_mjcf) {
-  std::unique_ptr<mjVFS, VfsDeleter> vfs(new mjVFS);
-  mj_defaultVFS(vfs.get());
+  const Vfs vfs = MakeVfs();
   AddText(kSceneName, mjcf, vfs.get());
-  if (!vehicle_mjcf.empty()) AddText(kVehicleIncludeName, vehicle_mjcf, vfs.get());
+  if (!vehicle_mjcf.empty()) {
+    CheckMjcf(vehicle_mjcf);
+    AddText(kVehicleIncludeName, vehicle_mjcf, vfs.get());
+  }
   return Load(kSceneName, vfs.get());
 }
 
-MujocoModel CompileMjcfFile(const std::string& path) { return Load(path.c_str(), nullptr); }
+MujocoModel CompileVehicleMjcf(const std::string& mjcf) {
+  CheckMjcf(mjcf);
+  return CompileMjcf(mjcf);
+}
+
+// Its text counts as a file of that folder, in which MuJoCo looks for meshes.
+MujocoModel CompileMjcfFile(const std::string& path) {
+  const Vfs vfs = MakeVfs();
+  AddText(kSceneName, ReadMjcf(path), vfs.get());
+  return Load((std::filesystem::path(path).parent_path() / kSceneName).c_str(), vfs.get());
+}
 
 MujocoData MakeMujocoData(const mjModel_& model) {
   MujocoData data;

@@ -23,10 +23,14 @@ inline constexpr char kVehicleIncludeName[] = "vehicle.xml";
 
 /// Compiles MJCF text; no file is read. One compilation runs at a time in a process, the caller
 /// waits. Throws std::invalid_argument with MuJoCo's message.
-/// @param vehicle_mjcf text that `mjcf` may include under kVehicleIncludeName; may be empty.
+/// @param vehicle_mjcf text that `mjcf` may include under kVehicleIncludeName; may be empty. It is asked as
+/// CompileVehicleMjcf asks.
 MujocoModel CompileMjcf(const std::string& mjcf, const std::string& vehicle_mjcf = "");
 
-/// Compiles the MJCF file at `path` with the files it names, meshes for one. Else the same.
+/// Compiles a vehicle's own text. Throws as CheckMjcf, too.
+MujocoModel CompileVehicleMjcf(const std::string& mjcf);
+
+/// Compiles the MJCF file at `path` with the meshes it names. Throws as ReadMjcf, too.
 MujocoModel CompileMjcfFile(const std::string& path);
 
 /// Throws std::runtime_error if MuJoCo cannot allocate.

@@ -17,8 +17,7 @@
 namespace touchdown::sim {
 namespace {
 
-constexpr std::size_t kMostPngBytes = 16
-                                      << 20;  // of 1024 x 1024 pixels, with room for other chunks
+constexpr std::size_t kMostPngBytes = 16 << 20;  // 1024 x 1024 pixels, with room for other chunks
 constexpr double kThickness = 0.5;  // below the lowest height [m]
 
 struct Png {
@@ -53,6 +52,8 @@ void Decode(std::string_view file, Png* png) {
   }
   if (setjmp(png_jmpbuf(read)) == 0) {
     png_set_read_fn(read, &file, TakeBytes);
+    // Compressed texts and profiles: they are not even inflated.
+    png_set_keep_unknown_chunks(read, PNG_HANDLE_CHUNK_NEVER, nullptr, -1);
     png_set_user_limits(read, HeightGrid::kMostSide, HeightGrid::kMostSide);
     png_read_info(read, info);
     png->width = png_get_image_width(read, info);

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <array>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <stdexcept>
 #include <utility>
 
-#include <assimp/Importer.hpp>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
+#include <assimp/IOSystem.hpp>
+#include <assimp/Importer.hpp>
 
 #include "estimation/base/argument_check.h"
 #include "sim/base/input_file.h"
@@ -18,21 +22,44 @@ namespace {
 
 constexpr std::size_t kMostTriangles = 2'000'000;
 
+// Others of assimp's are archives, which a bomb may fill, or keep their mesh in a second file.
+constexpr std::array kKinds = {".obj", ".stl", ".ply", ".off", ".dae", ".glb"};
+
+// Materials and pictures that a mesh names: it has none.
+class NoOtherFiles : public Assimp::IOSystem {
+ public:
+  bool Exists(const char* /*path*/) const override { return false; }
+  char getOsSeparator() const override { return '/'; }
+  Assimp::IOStream* Open(const char* /*path*/, const char* /*mode*/) override { return nullptr; }
+  void Close(Assimp::IOStream* /*file*/) override {}
+};
+
+/// "obj" of "a/b.OBJ".
+std::string KindOf(const std::string& path) {
+  std::string kind = std::filesystem::path(path).extension().string();
+  for (char& letter : kind)
+    letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+  if (std::find(kKinds.begin(), kKinds.end(), kind) == kKinds.end()) {
+    RefuseFile(path, "its name must end with .obj, .stl, .ply, .off, .dae or .glb");
+  }
+  return kind.substr(1);
+}
+
 }  // namespace
 
 std::vector<Obstacle> ObstaclesOfMeshFile(const std::string& path, double scale,
                                           const Placement& placement) {
   estimation::CheckAbove("scale of a mesh", scale, 0.0, 1e6);
-  // What its name does not hold could change unseen.
-  if (path.ends_with(".gltf")) RefuseFile(path, "it keeps its mesh in another file; allowed is .glb");
+  const std::string kind = KindOf(path);
   const std::string bytes = ReadInputFile(path, kMostInputBytes);
   if (bytes.empty()) RefuseFile(path, "it is empty");
   Assimp::Importer importer;
+  importer.SetIOHandler(new NoOtherFiles);  // owned by the importer
   // The parts of a scene at their places, each polygon in triangles. Points and lines are left out: they are no solids.
   const aiScene* scene = importer.ReadFileFromMemory(
       bytes.data(), bytes.size(),
       aiProcess_ValidateDataStructure | aiProcess_Triangulate | aiProcess_PreTransformVertices,
-      std::filesystem::path(path).extension().c_str());
+      kind.c_str());
   if (scene == nullptr) RefuseFile(path, importer.GetErrorString());
   std::vector<Eigen::Vector3d> corners;
   std::vector<Eigen::Vector3i> triangles;

@@ -16,6 +16,7 @@
 
 #include "estimation/base/argument_check.h"
 #include "sim/base/input_file.h"
+#include "sim/mujoco/mjcf_source.h"
 #include "sim/mujoco/mujoco_model.h"
 
 namespace touchdown::sim {
@@ -23,7 +24,6 @@ namespace {
 
 using estimation::VehicleModel;
 
-constexpr std::size_t kMostMjcfBytes = 16 << 20;
 constexpr double kTolerance = 1.0e-6;
 constexpr double kUnevenFeet = 1.0e-4;        // [m]
 constexpr double kLeastThrustToWeight = 1.2;  // below, there is nothing left to steer with
@@ -264,7 +264,7 @@ std::string ReadVehicleFile(const std::string& path) {
 
 std::optional<estimation::VehicleModel> ReadVehicleModel(const std::string& mjcf,
                                                          VehicleFindings* findings) {
-  const MujocoModel compiled = CompileMjcf(mjcf);
+  const MujocoModel compiled = CompileVehicleMjcf(mjcf);
   return Reader(*compiled, findings).Read();
 }
 

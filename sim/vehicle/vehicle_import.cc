@@ -453,14 +453,11 @@ bool OwnForm(const mjModel& m) {
 
 }  // namespace
 
-bool IsInOwnForm(const std::string& path) {
-  ReadVehicleFile(path);  // names a file that is not there
-  return OwnForm(*CompileMjcfFile(path));
-}
+bool IsInOwnForm(const std::string& path) { return OwnForm(*CompileMjcfFile(path)); }
 
 std::string ImportVehicle(const std::string& path, const AirframeExtras& extras,
                           VehicleFindings* findings) {
-  std::string text = ReadVehicleFile(path);  // names a file that is not there
+  std::string text = ReadVehicleFile(path);
   const MujocoModel model = CompileMjcfFile(path);
   if (OwnForm(*model)) return text;
   const Import import(*model, extras, findings);

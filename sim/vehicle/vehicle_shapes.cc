@@ -96,7 +96,7 @@ const char* ToString(VehicleShape::Kind kind) {
 }
 
 std::vector<VehicleShape> VehicleShapes(const std::string& mjcf) {
-  const MujocoModel model = CompileMjcf(mjcf);
+  const MujocoModel model = CompileVehicleMjcf(mjcf);
   const mjModel& m = *model;
   const int body = mj_name2id(&m, mjOBJ_BODY, "vehicle");
   if (body < 0) throw std::invalid_argument("the vehicle's file lacks the body \"vehicle\"");

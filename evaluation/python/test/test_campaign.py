@@ -187,6 +187,12 @@ TAMPERED = {
     "an outcome that there is not": "UPDATE trial SET outcome = 'x'",
     "no timing": "DELETE FROM timing",
     "a trial that was not planned": "UPDATE trial SET trial = 99; UPDATE timing SET trial = 99; DELETE FROM replan_time",
+    "trials beyond all numbers": ";".join(
+        f"UPDATE {table} SET trial = trial + 4294967296" for table in ("planned", "trial", "timing", "replan_time")),
+    "a cell that there is not": "UPDATE planned SET cell = 99",
+    "no cells": "DELETE FROM cell",
+    "no shard": "DELETE FROM manifest WHERE key = 'shard'",
+    "an index that computes": "CREATE INDEX sqliteX ON trial(hex(zeroblob(100)))",
     "times of no trial": "UPDATE replan_time SET trial = 99",
     "no table": "DROP TABLE cell_value",
     "another column": "ALTER TABLE trial RENAME COLUMN seed TO x",
