@@ -224,7 +224,7 @@ def airframe(inputs, folder, rng):
     shutil.copy(VEHICLES / f"{name}.xml", folder / "input.xml")
     path = folder / "input.airframe.yaml"
     path.write_bytes(mutated_text(vehicle.read_text(encoding="latin-1"), rng).encode("latin-1", "replace"))
-    return path, ["land", "open", "--set", f"vehicle={folder / 'input.xml'}", *SHORT]
+    return folder / "input.", ["land", "open", "--set", f"vehicle={folder / 'input.xml'}", *SHORT]
 
 
 def study(inputs, folder, rng):
