@@ -376,8 +376,7 @@ TEST(Replanner, ACutSolveThatViolatesARowIsNoPlan) {
 
 // What forbids the first plan, in the answer and in the log of its last attempt.
 std::string ForbiddenBy(const ReplannerOptions& options, const solvers::BackendRegistry& backends,
-                        ReplanReason reason) {
-  const OccupancyMap map = ObservedMap();
+                        ReplanReason reason, const OccupancyMap& map = ObservedMap()) {
   const ArcPad pad({5.0, 0.0, 0.3}, 0.5, 0.0, 0.0);
   const Eigen::Vector3d start(-4.0, 0.0, 1.5);
   Replanner replanner(options, backends);
@@ -447,6 +446,19 @@ TEST(Replanner, ARefusedPlanNamesTheLimitThatForbidsIt) {
   options.max_iterations = 1;
   options.max_duration = 6.0;
   EXPECT_EQ(ForbiddenBy(options, OnlyCut(0.0), ReplanReason::kLimitsExceeded), "limits.speed");
+}
+
+// The cut solve's point violates a row, and stays in the wall.
+TEST(Replanner, WhereAnObstacleForbidsAPlanNoTermDoes) {
+  OccupancyMap map = ObservedMap();
+  for (double y = -1.0; y < 1.0; y += 0.1) {
+    for (double z = 0.0; z < 2.0; z += 0.1) map.SetOccupied({0.0, y, z});
+  }
+  ReplannerOptions options = Options(ArrivalMode::kFixed);
+  options.backend = "cut";
+  options.problem.vehicle.tilt_max = 0.02;
+  options.problem.settings = {{"tilt_limit", {}, true, {}}};
+  EXPECT_EQ(ForbiddenBy(options, OnlyCut(0.0), ReplanReason::kCollisionRemains, map), "");
 }
 
 TEST(Replanner, ACutSolveThatStartsElsewhereIsNoPlan) {
