@@ -469,6 +469,7 @@ TEST(OnboardFlights, NothingIsAllocatedOnceItFlies) {
     world.Step(setpoint.thrusts);
   }
   EXPECT_FALSE(onboard.Step(100.0).armed);
+  EXPECT_TRUE(onboard.Step(100.0).CountsAt(100.0));  // they stand still for good
   EXPECT_EQ(taking, 0);
   EXPECT_EQ(stepping, 0);
 }

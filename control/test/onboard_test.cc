@@ -341,6 +341,58 @@ TEST(Onboard, AStallIsAnOutage) {
   EXPECT_EQ(onboard.status().time, StepTime::kGood);
 }
 
+// ... and what was tracked before it says nothing of the tracking, though no plan is found at first.
+TEST(Onboard, AReferenceThatAStallLostIsNoErrorOfTracking) {
+  Onboard onboard = Made(Options());
+  ToyWorld world;
+  world.vehicle = At(0.0);
+  world.pad_start = {12.0, 0.0, ToyWorld::kDeck};
+  world.pad_velocity.setZero();
+  onboard.Take(world.vehicle);
+  onboard.Begin(0.0, world.thrusts);
+  int failed = 0, planned = 0;
+  double largest = 0.0;
+  const auto fly = [&](double seconds, bool sees) {  // along the reference
+    for (int k = 0; k < std::lround(500.0 * seconds); ++k) {
+      onboard.Take(world.vehicle);
+      if (k % 50 == 0) onboard.Take(world.PadGps());
+      if (sees && k % 50 == 0) onboard.Take(world.Depth());
+      const planning::FlatState reference = onboard.Step(world.vehicle.t).reference;
+      if (const planning::ReplanResult* answer = onboard.plan().answer) {
+        ++(answer->status == planning::ReplanStatus::kPlanned ? planned : failed);
+        largest = std::max(largest, onboard.plan().asked->request.input.margins.tracking);
+      }
+      world.vehicle.p_WB = reference.p_WB;
+      world.vehicle.v_WB = reference.v_WB;
+      world.vehicle.t += ToyWorld::kStep;
+    }
+  };
+  fly(2.5, true);
+  EXPECT_GT(planned, 0);
+  EXPECT_GT(world.vehicle.v_WB.norm(), 1.0);
+  planned = failed = 0;
+  world.vehicle.t += 2.0;  // braked at once
+  world.vehicle.v_WB.setZero();
+  planning::OccupancyMap before = onboard.map();
+  for (double a = -1.2; a <= 1.2; a += 0.1) {  // a room
+    for (double b = -1.2; b <= 1.2; b += 0.1) {
+      for (const double wall : {-1.2, 1.2}) {
+        for (const Eigen::Vector3d& off : {Eigen::Vector3d(wall, a, b), Eigen::Vector3d(a, wall, b),
+                                           Eigen::Vector3d(a, b, wall)}) {
+          onboard.mutable_map()->SetOccupied(world.vehicle.p_WB + off);
+        }
+      }
+    }
+  }
+  fly(0.3, false);
+  EXPECT_GT(failed, 0);
+  EXPECT_EQ(planned, 0);
+  *onboard.mutable_map() = before;
+  fly(2.0, true);
+  EXPECT_GT(planned, 0);
+  EXPECT_LT(largest, 0.1);
+}
+
 // Nobody knows what has passed when the clock is another one: all that is known gets old.
 TEST(Onboard, AClockThatStartsAnewIsFollowed) {
   for (const double anew : {0.0, 4.9, 1.7e9}) {
