@@ -256,6 +256,7 @@ OptimalityCheck::Foot OptimalityCheck::StepOntoRows(const View& view, const Eige
     view.MoveIntoBounds(foot_.data());
     for (int i = 0; i < kMostRowSteps && Begin(view, foot_, must_stop, storage); ++i) {
       if (Violation(u_) <= Optimality::kFeasible) return Foot::kMeets;
+      if (rows_.constant_violation() > Optimality::kFeasible) return Foot::kLeast;
       if (!StepsCloser(&least)) break;
       std::copy(near_.begin(), near_.end(), foot_.data());
     }
