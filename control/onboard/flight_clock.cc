@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One time that leaps says nothing of a clock, but a few in a row that go on from each other do. If they are later by no
 // more than a process may stall, that time has passed: all that is known gets as old. Otherwise the clock is another
-// one. What has passed meanwhile is then what the few say, so the flight goes on where it was.
+// one, or the stall was longer. What has passed is not known then, and counts as the longest stall.
 #include "control/onboard/flight_clock.h"
-
-#include <algorithm>
 
 #include "control/onboard/stamps.h"
 
@@ -38,26 +36,22 @@ StepTime FlightClock::Step(double t) {
   if (!IsTime(t)) return StepTime::kInvalid;
   const double ahead = At(t) - now_;
   if (ahead == 0.0 && stepped_) return StepTime::kStands;
-  if (ahead >= 0.0 && ahead <= kCounts) {
-    stepped_ = true;
-    agree_ = 0;
-    now_ = At(t);
-    return StepTime::kGood;
-  }
+  if (ahead >= 0.0 && ahead <= kCounts) return Fly(t, StepTime::kGood);
   const bool repeats = agree_ > 0 && t == last_;
   const bool goes_on = agree_ > 0 && t > last_ && t <= last_ + kCounts;
-  if (!repeats && !goes_on) {
-    first_ = t;
-    agree_ = 0;
-  }
+  if (!repeats && !goes_on) agree_ = 0;
   last_ = t;
   if (!repeats) ++agree_;
   if (agree_ < kEnough) return ahead < 0.0 ? StepTime::kBack : StepTime::kLeap;
-  if (ahead < 0.0 || ahead > kLongestStall) offset_ = now_ + (t - first_) - t;
+  if (ahead < 0.0 || ahead > kLongestStall) offset_ = now_ + kLongestStall - t;
+  return Fly(t, StepTime::kResumed);
+}
+
+StepTime FlightClock::Fly(double t, StepTime judged) {
   stepped_ = true;
   agree_ = 0;
-  now_ = std::max(now_, At(t));  // rounded
-  return StepTime::kResumed;
+  now_ = At(t);
+  return judged;
 }
 
 }  // namespace touchdown::control

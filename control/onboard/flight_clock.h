@@ -19,11 +19,13 @@ class FlightClock {
   double At(double t) const { return t + offset_; }
 
  private:
+  StepTime Fly(double t, StepTime judged);
+
   double now_ = 0.0;     ///< of the flight, at the last step that was flown [s]
   double offset_ = 0.0;  ///< from the caller's time to it [s]
   bool stepped_ = false;
-  int agree_ = 0;                    ///< of the refused times: so many go on as a clock does, ...
-  double first_ = 0.0, last_ = 0.0;  ///< ... by the caller's clock [s]
+  int agree_ = 0;      ///< of the refused times: so many go on as a clock does, ...
+  double last_ = 0.0;  ///< ... to this one, by the caller's clock [s]
 };
 
 }  // namespace touchdown::control

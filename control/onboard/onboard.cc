@@ -73,8 +73,7 @@ struct Onboard::Parts {
   }
 
   void Plan(double t) {
-    if (awaits_own && !KnowsAttitude(senses.own().Status(t))) return;
-    awaits_own = false;
+    if (awaits_own) return;
     const bool usual = replan_clock.Due(t), close = close_clock.Due(t);
     if (!(pilot->plans_often() ? close : usual)) return;
     if (keep_before) plan.before = pilot->replanner_state();
@@ -104,11 +103,19 @@ struct Onboard::Parts {
     plan.answer = nullptr;
     plan.idle = false;
     refused = IsFlown(status.time) ? 0 : refused + 1;
-    if (refused == kMostRefused) Command(pilot->Level(senses.own().now().t));
+    senses.Doubt(refused > 0 && status.time != StepTime::kStands);
+    if (refused == kMostRefused) Command(pilot->Hold(senses.own().now().t));
     if (status.time != StepTime::kResumed) return;
     senses.Forget();
-    pilot->Resume();
     awaits_own = true;
+  }
+
+  /// After a stall or another clock. An estimated state may jump before it is usable again.
+  void Resume(double t) {
+    if (!awaits_own) return;
+    awaits_own = !IsUsable(senses.own().Status(t));
+    const bool leapt = status.time == StepTime::kResumed;
+    pilot->Resume(senses.own().now(), (leapt ? setpoint.reference : pilot->Reference(t)).a_WB);
   }
 
   /// From the caller's time t on [s].
@@ -119,6 +126,7 @@ struct Onboard::Parts {
 
   void Command(const PilotCommand& command) {
     setpoint.armed = pilot->mission().motors_armed;
+    setpoint.level = command.level;
     setpoint.thrusts = command.mix.thrusts;
     setpoint.saturated = command.mix.saturated;
     setpoint.wrench = command.law.wrench;
@@ -143,9 +151,8 @@ struct Onboard::Parts {
   double foot_force = 0.0;  ///< [N]
   double force_t = -std::numeric_limits<double>::infinity();
   FlightClock clock;
-  int refused = 0;  ///< steps in a row
-  bool awaits_own =
-      false;  ///< after a stall or another clock: no plan begins at a state from before
+  int refused = 0;          ///< steps in a row
+  bool awaits_own = false;  ///< a usable state, since it resumed: before it no plan begins
   bool keep_before = false;
   Setpoint setpoint;
   OnboardStatus status;
@@ -261,6 +268,7 @@ const Setpoint& Onboard::Step(double callers_t) {
   if (!IsFlown(it_->status.time)) return it_->setpoint;
   const double t = it_->clock.At(callers_t);
   it_->senses.Advance(t);
+  it_->Resume(t);
   AddThreadCpu(&it_->times.control, [&] {
     it_->status.mission_step = it_->mission_clock.Due(t);
     if (it_->status.mission_step) it_->Mission(t);

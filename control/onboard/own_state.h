@@ -75,10 +75,14 @@ class OwnState {
   int size_ = 0;
 };
 
+/// Good enough to fly to the pad by.
+constexpr bool IsUsable(estimation::OwnStatus status) {
+  return status == estimation::OwnStatus::kGood || status == estimation::OwnStatus::kOutage;
+}
+
 /// An attitude is known, however well: there is something to control.
 constexpr bool KnowsAttitude(estimation::OwnStatus status) {
-  return status == estimation::OwnStatus::kGood || status == estimation::OwnStatus::kOutage ||
-         status == estimation::OwnStatus::kUncertain;
+  return IsUsable(status) || status == estimation::OwnStatus::kUncertain;
 }
 
 }  // namespace touchdown::control

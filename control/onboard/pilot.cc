@@ -41,7 +41,6 @@ constexpr double kLevelTimeInPull = 0.2;  // more level time in wind [s per m/s^
 constexpr double kSofterInPull = 0.05;    // contact in wind: 0.2 m/s from 7 m/s on [m/s per m/s^2]
 constexpr double kMeasuredMargin = 1.2;   // a measured latency is flown with this factor
 constexpr double kAttitudeLag = 0.1;      // of the vehicle behind its plans [s]
-const double kReferenceLost = planning::ReplannerOptions().odometry_threshold;  // beyond it [m]
 constexpr double kTurning = 0.8;  // and then it takes so long to turn away from the deck [s]
 
 std::optional<estimation::PadKnowledge> KnowledgeOf(const OnboardOptions& options,
@@ -107,8 +106,7 @@ void Pilot::StepMission(const OwnState& own, const estimation::PadFilter& filter
     recent_error_ = {};
     meets_vehicle_at_.reset();
   }
-  const double error = (parts_.planner->Reference(t).p_WB - vehicle.p_WB).norm();
-  if (!resumes_ || error <= kReferenceLost) recent_error_.Note(t, error);
+  recent_error_.Note(t, (parts_.planner->Reference(t).p_WB - vehicle.p_WB).norm());
   MissionInputs inputs;
   inputs.t = t;
   inputs.pad_available = KnowsTarget(filter);
@@ -131,7 +129,7 @@ void Pilot::StepMission(const OwnState& own, const estimation::PadFilter& filter
   if (std::isfinite(contact_in)) inputs.contact_sigma = filter.PositionSigma(t + contact_in);
   const estimation::OwnStatus status = own.Status(t);
   inputs.own_fresh = status == estimation::OwnStatus::kGood;
-  inputs.own_usable = inputs.own_fresh || status == estimation::OwnStatus::kOutage;
+  inputs.own_usable = IsUsable(status);
   own_usable_ = inputs.own_usable;
   inputs.depth_age = depth_age;
   sees_ = depth_age <= parameters_.depth_timeout;
@@ -165,6 +163,17 @@ void Pilot::StepMission(const OwnState& own, const estimation::PadFilter& filter
   yaw_t_ = t + dt;
 }
 
+void Pilot::Resume(const estimation::VehicleState& vehicle, const Eigen::Vector3d& a_WB) {
+  planning::FlatState from;
+  from.p_WB = vehicle.p_WB;
+  from.v_WB = vehicle.v_WB;
+  from.a_WB = a_WB;
+  parts_.planner->CommitStop(from, vehicle.t);
+  way_ = nullptr;
+  lands_ = false;
+  plan_end_t_ = std::numeric_limits<double>::infinity();
+}
+
 const planning::ReplanResult* Pilot::Replan(const estimation::VehicleState& vehicle,
                                             const estimation::PadFilter& filter,
                                             const planning::OccupancyMap& map) {
@@ -195,7 +204,6 @@ const planning::ReplanResult* Pilot::Replan(const estimation::VehicleState& vehi
   const planning::ReplanResult& result = Ask(wants_plan, filter, map);
   idle_ = result.idle;
   if (idle_) return nullptr;
-  resumes_ = false;
   look_W_ = result.unseen_W;
   way_ = &result.curve;
   if (result.from_odometry) meets_vehicle_at_ = input.t_start;
@@ -290,12 +298,12 @@ const planning::ReplanResult& Pilot::Ask(bool for_plan, const estimation::PadFil
 
 PilotCommand Pilot::Control(const OwnState& own) {
   const double t = own.now().t;
-  PilotCommand command;
-  command.reference = Reference(t);
-  command.mix.thrusts.setZero(mixer_.min().size());
+  PilotCommand command = Level(t);
   if (!mission_.motors_armed) return command;
-  command.law = KnowsAttitude(own.Status(t)) ? Tracked(own.now(), command.reference)
-                                             : Blind(t, command.reference);
+  if (KnowsAttitude(own.Status(t))) {
+    command.law = Tracked(own.now(), command.reference);
+    command.level = false;
+  }
   MixerOutput& mix = command.mix;
   mix = mixer_.Mix(command.law.wrench);
   if (lead_) mix.thrusts = lead_->Command(mix.thrusts, t);
@@ -303,13 +311,22 @@ PilotCommand Pilot::Control(const OwnState& own) {
   return command;
 }
 
+// A lead is for the moment, and this may be flown for long.
+PilotCommand Pilot::Hold(double t) {
+  PilotCommand command = Level(t);
+  if (!mission_.motors_armed) return command;
+  command.mix = mixer_.Mix(command.law.wrench);
+  if (lead_) lead_->Hover(command.mix.thrusts);
+  if (observer_) observer_->Command(command.mix.thrusts);
+  return command;
+}
+
 PilotCommand Pilot::Level(double t) const {
   PilotCommand command;
   command.reference = Reference(t);
   command.mix.thrusts.setZero(mixer_.min().size());
-  if (!mission_.motors_armed) return command;
-  command.law = Blind(t, command.reference);
-  command.mix = mixer_.Mix(command.law.wrench);
+  command.level = mission_.motors_armed;
+  if (command.level) command.law = Blind(t, command.reference);
   return command;
 }
 

@@ -34,6 +34,7 @@ struct PilotCommand {
   ControlOutput law;
   MixerOutput mix;                ///< rotor thrusts [N]
   planning::FlatState reference;  ///< as committed
+  bool level = false;             ///< without knowing how the vehicle is
 };
 
 /// What an Onboard does with what it knows: mission, replanning, heading, tracking.
@@ -50,9 +51,9 @@ class Pilot {
   void StepMission(const OwnState& own, const estimation::PadFilter& filter, double depth_age,
                    double foot_force, double dt);
 
-  /// Time has passed in which nothing was flown. How far off a reference is that was lost meanwhile says nothing of the
-  /// tracking: the next plan begins at the vehicle.
-  void Resume() { resumes_ = true; }
+  /// Time has passed in which nothing was flown. A reference that leapt may lead through the deck: the vehicle brakes,
+  /// with the acceleration that it had [m/s^2], until there is a new plan.
+  void Resume(const estimation::VehicleState& vehicle, const Eigen::Vector3d& a_WB);
 
   /// One replanning step while flying, to the pad or to rest as the mission wants. nullptr while
   /// hovering or disarmed, and where the planner had nothing to do. Call at replan_rate, or at
@@ -63,8 +64,10 @@ class Pilot {
 
   /// What is commanded in this control step. Once per step: the disturbance is estimated from it.
   PilotCommand Control(const OwnState& own);
-  /// What is flown at time t without knowing how the vehicle is: level, hover thrust, no moment.
+  /// What is flown at time t without knowing how the vehicle is: level, hover thrust, no moment. No rotor thrusts yet.
   PilotCommand Level(double t) const;
+  /// The same with thrusts, for as long as it takes.
+  PilotCommand Hold(double t);
 
   /// What the tracking law compensates; nothing where it is not estimated.
   Disturbance disturbance() const;
@@ -139,7 +142,6 @@ class Pilot {
   bool lands_ = false;                             // what is flown ends in contact
   double own_position_sigma_ = 0.0, own_attitude_sigma_ = 0.0;
   planning::RecentError recent_error_;      // of tracking
-  bool resumes_ = false;                    ///< until the next plan
   std::optional<double> meets_vehicle_at_;  // the reference does, that of a plan from the vehicle
   bool last_planned_ = false;          ///< the last replanning step left no plan to be wished for
   std::optional<double> planned_t_;    ///< when the last new plan was made

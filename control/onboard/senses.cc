@@ -64,7 +64,7 @@ bool Senses::IsAhead(double t) const {
 
 std::optional<Taken> Senses::Refused(double t, const Stamps& used) const {
   if (!own_.known()) return Taken::kUnasked;
-  if (IsAhead(t)) return Taken::kInvalid;
+  if (doubts_ || IsAhead(t)) return Taken::kInvalid;
   if (used.Has(t)) return Taken::kDoubled;
   if (!own_.Reaches(t)) return Taken::kTooOld;
   return std::nullopt;

@@ -42,6 +42,8 @@ class Senses {
   void Begin();
   void Advance(double t) { own_.Advance(t); }
   void Forget() { own_.Forget(); }
+  /// Of which time measurements are is not known now: those of pad and depth are refused.
+  void Doubt(bool doubts) { doubts_ = doubts; }
 
   /// Since the stamp of the last depth image, or since Begin if none has come [s].
   double DepthAge(double t) const { return std::max(0.0, t - depth_t_); }
@@ -65,6 +67,7 @@ class Senses {
   planning::PersistentMap memory_;
   double deck_half_size_;
   double start_free_;
+  bool doubts_ = false;
   bool pad_is_obstacle_;  // the goal is another than the pad
   Stamps fixes_, sightings_, pad_images_, images_;
   double depth_t_ = 0.0;  // of the last depth image, or of Begin [s]

@@ -73,7 +73,9 @@ struct Landing {
   bool landed = false;
   double off = 0.0;           ///< from the middle of the pad, at the end [m]
   double nearest_wall = 1e9;  ///< of the vehicle's axis [m]
+  double lowest = 1e9;        ///< of the feet of an upright vehicle, above the deck's height [m]
   double meets = 0.0;         ///< vertical speed at first contact [m/s]
+  double meets_at = 0.0;      ///< ... and when that was [s]
   bool proven = true;         ///< all that was committed
   std::array<int, kTakenKinds> taken{};
   std::array<int, kStepTimes> steps{};
@@ -144,7 +146,7 @@ Landing Fly(std::uint64_t seed, const Mess& mess) {
   Landing landing;
   bool met = false;
   Setpoint setpoint;
-  for (int k = 0; k < 20000; ++k) {
+  for (int k = 0; world.vehicle.t < 40.0 + mess.stall; ++k) {
     const double t = world.vehicle.t, now = mess.Clock(t);
     if (t >= mess.leap_at && t < mess.leap_at + mess.stall) {
       world.Step(Autopilot(setpoint, world, now));
@@ -175,8 +177,13 @@ Landing Fly(std::uint64_t seed, const Mess& mess) {
     landing.proven &= answer == nullptr || !answer->committed || answer->proven;
     landing.nearest_wall =
         std::min(landing.nearest_wall, DistanceTo(world.wall, world.vehicle.p_WB));
-    if (!met && world.foot_force > 0.0) landing.meets = world.vehicle.v_WB.z();
-    met = met || world.foot_force > 0.0;
+    landing.lowest =
+        std::min(landing.lowest, world.vehicle.p_WB.z() - world.model.foot_depth - ToyWorld::kDeck);
+    if (!met && world.foot_force > 0.0) {
+      landing.meets = world.vehicle.v_WB.z();
+      landing.meets_at = t;
+      met = true;
+    }
     if (!setpoint.armed) {
       landing.landed = true;
       break;
@@ -241,7 +248,7 @@ TEST(OnboardFlights, LandThoughTheOwnStateIsAwayForAWhile) {
   }
 }
 
-// A clock that is set, forth by years or back, is another one: the flight goes on. So it does with an estimated state.
+// A clock that is set, forth by years or back, is another one. So it is with an estimated state.
 TEST(OnboardFlights, LandThoughTheClockIsSet) {
   for (const double leap : {1.7e9, 20.0, -0.3, -3.99}) {
     for (const bool estimated : {false, true}) {
@@ -266,7 +273,9 @@ TEST(OnboardFlights, LandThoughTheProcessStalls) {
       Mess mess;
       mess.autopilot = true;
       (truly ? mess.stall : mess.leap) = seconds;
-      for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+      for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+        mess.estimated = seed > 5;
+        mess.leap_at = mess.estimated ? 2.5 : 4.0;  // on the way
         const Landing landing = Fly(seed, mess);
         const std::string what = std::to_string(seconds) + " s, seed " + std::to_string(seed);
         ExpectLanded(landing, what + (truly ? "" : ", by the clock only"));
@@ -288,6 +297,46 @@ TEST(OnboardFlights, StepsOfWrongTimesChangeNoBit) {
     EXPECT_GT(with.steps[static_cast<int>(StepTime::kLeap)], 50);
     EXPECT_EQ(with.steps[static_cast<int>(StepTime::kGood)],
               without.steps[static_cast<int>(StepTime::kGood)]);
+  }
+}
+
+// Nobody knows for how long a process stalled whose clock is another one. The autopilot brakes while the pad drives on.
+TEST(OnboardFlights, LandThoughTheProcessStallsForLongAboveTheDeck) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const double contact = Fly(seed, {}).meets_at;
+    for (const double seconds : {11.0, 30.0}) {
+      for (const double before : {2.0, 1.0, 0.5, 0.2}) {
+        Mess mess;
+        mess.autopilot = true;
+        mess.stall = seconds;
+        mess.leap_at = contact - before;
+        const Landing landing = Fly(seed, mess);
+        const std::string what = std::to_string(seconds) + " s, " + std::to_string(before) +
+                                 " s before contact, seed " + std::to_string(seed);
+        ExpectLanded(landing, what);
+        EXPECT_GT(landing.lowest, -0.1) << what;  // not where the deck was
+      }
+    }
+  }
+}
+
+// A reference that leaps leads to the deck at once. Where the clock is wrong, so is the pad's prediction.
+TEST(OnboardFlights, LandSoftlyThoughTheClockLeapsAboveTheDeck) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    const double contact = Fly(seed, {}).meets_at;
+    for (const double leap : {0.15, 0.3, 0.5, 1.0, 2.0, 9.0, -0.3}) {
+      for (double before = 2.0; before > -0.5; before -= 0.25) {
+        Mess mess;
+        mess.leap = leap;
+        mess.leap_at = contact - before;
+        const Landing landing = Fly(seed, mess);
+        const std::string what = std::to_string(leap) + " s, " + std::to_string(before) +
+                                 " s before contact, seed " + std::to_string(seed);
+        EXPECT_TRUE(landing.landed) << what << ": " << landing.mode;
+        EXPECT_LT(landing.off, 0.5) << what;
+        EXPECT_GT(landing.meets, -0.5) << what;
+      }
+    }
   }
 }
 
@@ -325,6 +374,7 @@ TEST(OnboardFlights, NoClockFreezesThemOrLeadsThemAstray) {
     Setpoint last;
     long allocated = 0;
     int same = 0, longest = 0, committed = 0;
+    double nearest_wall = 1e9;
     for (int k = 0; k < 20000 && onboard.status().mission.motors_armed; ++k) {
       const auto stamped = [&](auto measured) {
         measured.t = clock.At(measured.t);
@@ -356,13 +406,21 @@ TEST(OnboardFlights, NoClockFreezesThemOrLeadsThemAstray) {
         const bool at_deck = mode == MissionMode::kLanding || mode == MissionMode::kGoAround;
         EXPECT_TRUE(answer->proven || at_deck) << seed << ", " << k;  // docs/safety.md says when
       }
-      const bool level = setpoint.wrench.moment_B.isZero() && setpoint.R_WB.col(2).z() == 1.0;
-      same = !level && setpoint.thrusts == last.thrusts && setpoint.t == last.t ? same + 1 : 0;
+      if (setpoint.level) {
+        EXPECT_TRUE(setpoint.wrench.moment_B.isZero() && setpoint.R_WB.col(2).z() == 1.0);
+      }
+      nearest_wall = std::min(nearest_wall, DistanceTo(world.wall, world.vehicle.p_WB));
+      same = !setpoint.level && setpoint.thrusts == last.thrusts && setpoint.t == last.t ? same + 1
+                                                                                         : 0;
       longest = std::max(longest, same);
       last = setpoint;
       world.Step(Autopilot(setpoint, world, now));
     }
     EXPECT_LE(longest, 49) << seed;
+    EXPECT_GT(nearest_wall, HullAtEveryTilt(world.model)) << seed;
+    if (!onboard.status().mission.motors_armed) {
+      EXPECT_GT(world.foot_force, 0.0) << seed;
+    }
     EXPECT_GT(committed, 10) << seed;
     EXPECT_GT(onboard.steps()[static_cast<int>(StepTime::kResumed)], 10) << seed;
     EXPECT_TRUE(allocated == 0 || solvers::AllocationCount() < 0) << seed << ": " << allocated;
@@ -411,6 +469,7 @@ TEST(OnboardFlights, NothingIsAllocatedOnceItFlies) {
     world.Step(setpoint.thrusts);
   }
   EXPECT_FALSE(onboard.Step(100.0).armed);
+  EXPECT_TRUE(onboard.Step(100.0).CountsAt(100.0));  // they stand still for good
   EXPECT_EQ(taking, 0);
   EXPECT_EQ(stepping, 0);
 }

@@ -307,6 +307,7 @@ TEST(Onboard, ASetpointCountsForATenthOfASecond) {
   EXPECT_EQ(setpoint.valid_until, 0.12 + 0.1);
   EXPECT_TRUE(setpoint.CountsAt(0.21));
   EXPECT_FALSE(setpoint.CountsAt(0.23));
+  EXPECT_FALSE(setpoint.CountsAt(0.12 - 3600.0));  // the clock was set back
   EXPECT_FALSE(setpoint.CountsAt(kNan));
   onboard.Step(9.0);
   EXPECT_EQ(setpoint.valid_until, 0.12 + 0.1);
@@ -340,7 +341,59 @@ TEST(Onboard, AStallIsAnOutage) {
   EXPECT_EQ(onboard.status().time, StepTime::kGood);
 }
 
-// No time has passed when the clock is another one.
+// ... and what was tracked before it says nothing of the tracking, though no plan is found at first.
+TEST(Onboard, AReferenceThatAStallLostIsNoErrorOfTracking) {
+  Onboard onboard = Made(Options());
+  ToyWorld world;
+  world.vehicle = At(0.0);
+  world.pad_start = {12.0, 0.0, ToyWorld::kDeck};
+  world.pad_velocity.setZero();
+  onboard.Take(world.vehicle);
+  onboard.Begin(0.0, world.thrusts);
+  int failed = 0, planned = 0;
+  double largest = 0.0;
+  const auto fly = [&](double seconds, bool sees) {  // along the reference
+    for (int k = 0; k < std::lround(500.0 * seconds); ++k) {
+      onboard.Take(world.vehicle);
+      if (k % 50 == 0) onboard.Take(world.PadGps());
+      if (sees && k % 50 == 0) onboard.Take(world.Depth());
+      const planning::FlatState reference = onboard.Step(world.vehicle.t).reference;
+      if (const planning::ReplanResult* answer = onboard.plan().answer) {
+        ++(answer->status == planning::ReplanStatus::kPlanned ? planned : failed);
+        largest = std::max(largest, onboard.plan().asked->request.input.margins.tracking);
+      }
+      world.vehicle.p_WB = reference.p_WB;
+      world.vehicle.v_WB = reference.v_WB;
+      world.vehicle.t += ToyWorld::kStep;
+    }
+  };
+  fly(2.5, true);
+  EXPECT_GT(planned, 0);
+  EXPECT_GT(world.vehicle.v_WB.norm(), 1.0);
+  planned = failed = 0;
+  world.vehicle.t += 2.0;  // braked at once
+  world.vehicle.v_WB.setZero();
+  planning::OccupancyMap before = onboard.map();
+  for (double a = -1.2; a <= 1.2; a += 0.1) {  // a room
+    for (double b = -1.2; b <= 1.2; b += 0.1) {
+      for (const double wall : {-1.2, 1.2}) {
+        for (const Eigen::Vector3d& off : {Eigen::Vector3d(wall, a, b), Eigen::Vector3d(a, wall, b),
+                                           Eigen::Vector3d(a, b, wall)}) {
+          onboard.mutable_map()->SetOccupied(world.vehicle.p_WB + off);
+        }
+      }
+    }
+  }
+  fly(0.3, false);
+  EXPECT_GT(failed, 0);
+  EXPECT_EQ(planned, 0);
+  *onboard.mutable_map() = before;
+  fly(2.0, true);
+  EXPECT_GT(planned, 0);
+  EXPECT_LT(largest, 0.1);
+}
+
+// Nobody knows what has passed when the clock is another one: all that is known gets old.
 TEST(Onboard, AClockThatStartsAnewIsFollowed) {
   for (const double anew : {0.0, 4.9, 1.7e9}) {
     Onboard onboard = Made(Options());
@@ -349,7 +402,7 @@ TEST(Onboard, AClockThatStartsAnewIsFollowed) {
     onboard.Step(5.0);
     for (int k = 0; k < 5; ++k) onboard.Step(anew + 0.002 * k);
     EXPECT_EQ(onboard.status().time, StepTime::kResumed) << anew;
-    EXPECT_NEAR(onboard.FlightTime(anew + 0.008), 5.008, 1e-6) << anew;
+    EXPECT_NEAR(onboard.FlightTime(anew + 0.008), 15.0, 1e-6) << anew;
     EXPECT_NE(onboard.Take(At(5.01)), Taken::kUsed) << anew;
     EXPECT_EQ(onboard.Take(At(anew + 0.01, {0.1, 0, 2})), Taken::kUsed) << anew;
     EXPECT_EQ(onboard.Take(estimation::FootForce{anew + 0.01, 0.0}), Taken::kUsed) << anew;
@@ -363,6 +416,41 @@ TEST(Onboard, AClockThatStartsAnewIsFollowed) {
   }
 }
 
+// The new clock shows a little less: what comes by it seems to be late.
+TEST(Onboard, WithoutATimeThePadAndTheObstaclesAreNotMeasured) {
+  Onboard onboard = Hovering(0.5);
+  onboard.Step(0.5);
+  ToyWorld world;
+  world.vehicle = At(0.2);
+  world.pad_start = {0.0, 0.0, ToyWorld::kDeck};
+  EXPECT_EQ(onboard.Step(0.2).t, 0.5);
+  EXPECT_EQ(onboard.Take(world.Depth()), Taken::kInvalid);
+  EXPECT_EQ(onboard.Take(world.PadGps()), Taken::kInvalid);
+  EXPECT_EQ(onboard.Take(world.Sighting()), Taken::kInvalid);
+  for (int k = 1; k < 5; ++k) onboard.Step(0.2 + 0.002 * k);
+  EXPECT_EQ(onboard.status().time, StepTime::kResumed);
+  world.vehicle.t = 0.21;
+  onboard.Take(world.vehicle);
+  EXPECT_EQ(onboard.Take(world.Depth()), Taken::kUsed);
+  EXPECT_EQ(onboard.Take(world.PadGps()), Taken::kUsed);
+  EXPECT_EQ(onboard.Take(world.Sighting()), Taken::kUsed);
+}
+
+// A clock of few ticks shows each of them for several steps.
+TEST(Onboard, ATimeThatStandsShutsNothingOut) {
+  Onboard onboard = Hovering(0.1);
+  onboard.Step(0.1);
+  onboard.Step(0.1);
+  EXPECT_EQ(onboard.status().time, StepTime::kStands);
+  EXPECT_EQ(onboard.Take(estimation::PadGpsFix{0.1, {4, 1}, 0.1}), Taken::kUsed);
+}
+
+// Rotors that stand still do so for however long.
+TEST(Onboard, ADisarmedSetpointAlwaysCounts) {
+  Onboard onboard = Made(Options());
+  for (const double t : {0.0, 1e6, 1.7e9}) EXPECT_TRUE(onboard.Step(t).CountsAt(t));
+}
+
 // A tilt asks for a moment. It must not go on for ever.
 TEST(Onboard, WithoutAnyTimeItLevelsOut) {
   Onboard onboard = Hovering(0.1);
@@ -372,7 +460,9 @@ TEST(Onboard, WithoutAnyTimeItLevelsOut) {
   const Setpoint& setpoint = onboard.Step(0.12);
   for (int k = 0; k < 49; ++k) onboard.Step(k % 2 == 0 ? kNan : 1e3 * k);
   EXPECT_GT(setpoint.wrench.moment_B.norm(), 0.1);
+  EXPECT_FALSE(setpoint.level);
   onboard.Step(kNan);
+  EXPECT_TRUE(setpoint.level);
   EXPECT_EQ(setpoint.wrench.moment_B.norm(), 0.0);
   EXPECT_NEAR(setpoint.thrusts.sum(), ToyQuadrotor().HoverThrust(), 0.1);
   EXPECT_TRUE(setpoint.armed);

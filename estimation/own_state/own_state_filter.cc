@@ -25,6 +25,8 @@ namespace {
 
 // Measurements other than the IMU come at most this often, all together [Hz].
 constexpr double kMeasurementRate = 300.0;
+// A vehicle that goes on flying in a gap of the IMU has not turned farther, 1 sigma [rad].
+constexpr double kMostTurned = 0.3;
 
 }  // namespace
 
@@ -210,7 +212,7 @@ OwnUpdate OwnStateFilter::Replay(int i) {
   if (gap > options_.max_imu_gap) {
     ++state.diagnostics.imu_gaps;
     const double dv = options_.gap_acceleration * gap;
-    const double turn = options_.gap_rate * gap;
+    const double turn = std::min(options_.gap_rate * gap, kMostTurned);
     auto diagonal = state.belief.cov.diagonal();
     diagonal.segment<3>(kPositionError).array() += 0.25 * dv * dv * gap * gap;
     diagonal.segment<3>(kVelocityError).array() += dv * dv;
@@ -219,9 +221,12 @@ OwnUpdate OwnStateFilter::Replay(int i) {
   return OwnUpdate::kAccepted;
 }
 
+/// A reading says nothing of the whole of a gap: the state goes on as it was.
 void OwnStateFilter::Carry(double t, const ImuSample& imu, Snapshot& state) const {
-  const double dt = t - state.belief.state.t;
-  if (dt > 0.0) state.belief = PropagateOwnBelief(state.belief, imu, dt, options_.imu);
+  const double dt = t - state.belief.state.t, unseen = dt - options_.max_imu_gap;
+  if (unseen > 0.0) state.belief.state.p_WB += unseen * state.belief.state.v_WB;
+  const double seen = std::min(dt, options_.max_imu_gap);
+  if (seen > 0.0) state.belief = PropagateOwnBelief(state.belief, imu, seen, options_.imu);
   state.belief.state.t = t;
 }
 

@@ -153,5 +153,26 @@ TEST(OwnStateFaults, AGapOfTheImuWidensTheBelief) {
   EXPECT_EQ(flight.filter.AddImu(sample), OwnUpdate::kTooOld);
 }
 
+// One reading must not turn the vehicle through all of it.
+TEST(OwnStateFaults, AfterALongGapOfTheImuTheAttitudeIsThatFromBefore) {
+  OwnRig rig;
+  OwnRun flight(4, 0.0, rig);
+  flight.StartFromPrior();
+  flight.FlyTo(2.0);
+  const VehicleState before = flight.filter.Estimate();
+  ImuSample sample;
+  sample.t = 12.0;
+  sample.f_B = {0.0, 0.0, kGravity};
+  sample.w_WB_B = {0.3, 0.0, 0.0};
+  EXPECT_EQ(flight.filter.AddImu(sample), OwnUpdate::kAccepted);
+  const VehicleState after = flight.filter.Estimate();
+  EXPECT_LT(after.q_WB.angularDistance(before.q_WB), 0.02);
+  EXPECT_LT((after.p_WB - before.p_WB - 10.0 * before.v_WB).norm(), 1.0);
+  const auto& cov = flight.filter.belief().cov;
+  EXPECT_GT(std::sqrt(cov(kAttitudeError, kAttitudeError)), 0.2);
+  EXPECT_LT(std::sqrt(cov(kAttitudeError, kAttitudeError)), 0.4);
+  EXPECT_GT(std::sqrt(cov(kPositionError, kPositionError)), 100.0);
+}
+
 }  // namespace
 }  // namespace touchdown::estimation

@@ -162,6 +162,7 @@ void BindOnboard(py::module_& m) {
       .def_readonly("t", &control::Setpoint::t, Doc("Setpoint::t"))
       .def_readonly("valid_until", &control::Setpoint::valid_until, Doc("Setpoint::valid_until"))
       .def_readonly("armed", &control::Setpoint::armed, Doc("Setpoint::armed"))
+      .def_readonly("level", &control::Setpoint::level, Doc("Setpoint::level"))
       .def_property_readonly(
           "thrusts", [](const control::Setpoint& s) { return Eigen::VectorXd(s.thrusts); },
           Doc("Setpoint::thrusts"))

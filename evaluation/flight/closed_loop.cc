@@ -113,7 +113,6 @@ class Trial {
         air_(scenario, draw, seed),
         perception_(scenario, world_, seed),
         onboard_(MakeOnboard(scenario, world_.model(), world_.pad_course(), registries)),
-        hover_(world_.rotor_commands()),
         clearance_(world_.config().obstacles, world_.model()),
         has_prior_(scenario.map_prior != "none"),
         task_(scenario.task),
@@ -156,9 +155,7 @@ class Trial {
     const control::Setpoint& setpoint = onboard_.Step(world_.time());
     NoteMode(vehicle.t);
     NotePlan(vehicle.t);
-    const bool counts = setpoint.CountsAt(world_.time());
-    solvers::AddThreadCpu(&result_.timing.physics_cpu_s,
-                          [&] { StepPhysics(counts ? setpoint.thrusts : hover_); });
+    solvers::AddThreadCpu(&result_.timing.physics_cpu_s, [&] { StepPhysics(setpoint.thrusts); });
     solvers::AddThreadCpu(&result_.timing.judging_cpu_s,
                           [&] { Judge(vehicle, pad, setpoint.saturated); });
   }
@@ -434,7 +431,6 @@ class Trial {
   Air air_;
   Perception perception_;
   control::Onboard onboard_;
-  estimation::Commands hover_;  ///< which the rotors get where no set-point counts
   sim::LeastClearance clearance_;
   bool has_prior_;
   TaskKind task_;

@@ -90,12 +90,10 @@ void PlanAttempt::Begin(Candidate* candidate) {
   candidate->bound.clear();
   candidate->solved = false;
   candidate->round = -1;
-  candidate->forbidden_by = {};
 }
 
 ReplanReason PlanAttempt::Run(const AttemptRequest& request, ReplanResult* result) {
-  best_.forbidden_by = {};
-  best_.reason = Try(request, result);
+  const Refusal refusal = Try(request, result);
   if (request.arrival == ArrivalMode::kFree && best_.solved)
     duration_ = best_.pair.curve.duration();
   if (best_.solved) {
@@ -105,21 +103,20 @@ ReplanReason PlanAttempt::Run(const AttemptRequest& request, ReplanResult* resul
   result->certificate = best_.certificate.value_or(Certificate());
   result->pairs = static_cast<int>(best_.pairs.size());
   result->bound = best_.bound;
-  const bool planned = best_.reason == ReplanReason::kNone;
-  result->forbidden_by = planned ? std::string_view() : best_.forbidden_by;
+  result->forbidden_by = refusal.forbidden_by;
   if (request.log) {
     request.log->duration = duration_;
     request.log->arrival = request.arrival;
     request.log->segments = segments_;
     request.log->best = best_.round;
     request.log->certificate = best_.certificate;
-    request.log->reason = best_.reason;
+    request.log->reason = refusal;
     request.log->forbidden_by = result->forbidden_by;
   }
-  return best_.reason;
+  return refusal;
 }
 
-ReplanReason PlanAttempt::Try(const AttemptRequest& request, ReplanResult* result) {
+Refusal PlanAttempt::Try(const AttemptRequest& request, ReplanResult* result) {
   finder_.Begin(request.limits.speed);
   kept_.Clear();
   kept_asked_ = false;
@@ -131,37 +128,34 @@ ReplanReason PlanAttempt::Try(const AttemptRequest& request, ReplanResult* resul
     return reason == ReplanReason::kNone || reason == ReplanReason::kUnobserved;
   };
   if (keeps && !request.looks) {
-    const ReplanReason reason = KeepCommitted(request, result);
-    if (holds(reason)) return reason;
+    const Refusal refusal = KeepCommitted(request, result);
+    if (holds(refusal)) return refusal;
   }
   const bool may_keep = keeps && request.looks;
   std::optional<WorkBudget::SetAside> aside;
   if (may_keep) aside.emplace(WorkBudget::kKeptShare, &budget_);
-  const ReplanReason found = FindAnew(request, warm, leads_around, result);
+  const Refusal found = FindAnew(request, warm, leads_around, result);
   aside.reset();
   if (holds(found) || !may_keep) return found;
   // If no better plan is found, a committed plan that holds is kept before a later arrival is
   // tried.
-  const std::string_view forbidden_by = best_.forbidden_by;
-  const ReplanReason kept = KeepCommitted(request, result);
-  if (holds(kept)) return kept;
-  best_.forbidden_by = forbidden_by;
-  return found;
+  const Refusal kept = KeepCommitted(request, result);
+  return holds(kept) ? kept : found;
 }
 
-ReplanReason PlanAttempt::FindAnew(const AttemptRequest& request, const UniformBspline* warm,
-                                   bool leads_around, ReplanResult* result) {
+Refusal PlanAttempt::FindAnew(const AttemptRequest& request, const UniformBspline* warm,
+                              bool leads_around, ReplanResult* result) {
   Begin(&best_);
   Posed posed;
-  ReplanReason reason = SolveWithoutPairs(request, request.segments, warm, &posed, &best_, result);
-  if (reason != ReplanReason::kNone) return reason;
+  Refusal refusal = SolveWithoutPairs(request, request.segments, warm, &posed, &best_, result);
+  if (refusal != ReplanReason::kNone) return refusal;
   // So near that the first free control point comes too late to pass it.
   const bool near = leads_around && !best_.blocked.empty() && !best_.blocked.front().at_start &&
                     best_.blocked.front().t_in - request.t0 <
                         options_.constants.near_obstacle * best_.pair.curve.interval();
   if (near && request.segments < request.near_segments) {
-    reason = Refine(request, &posed, &best_, result);
-    if (reason != ReplanReason::kNone) return reason;
+    refusal = Refine(request, &posed, &best_, result);
+    if (refusal != ReplanReason::kNone) return refusal;
   }
   if (!best_.blocked.empty() && leads_around) return TryPaths(request, &posed, result);
   return KeepLimits(request, posed, &best_, result);
@@ -185,9 +179,9 @@ ReplanReason PlanAttempt::Pose(const AttemptRequest& request, int segments, Pose
   return ReplanReason::kNone;
 }
 
-ReplanReason PlanAttempt::SolveWithoutPairs(const AttemptRequest& request, int segments,
-                                            const UniformBspline* guess, Posed* posed,
-                                            Candidate* candidate, ReplanResult* result) {
+Refusal PlanAttempt::SolveWithoutPairs(const AttemptRequest& request, int segments,
+                                       const UniformBspline* guess, Posed* posed,
+                                       Candidate* candidate, ReplanResult* result) {
   const ReplanReason refused = Pose(request, segments, posed);
   if (refused != ReplanReason::kNone) return refused;
   PreparedProblem& prepared = *posed->prepared;
@@ -204,15 +198,15 @@ ReplanReason PlanAttempt::SolveWithoutPairs(const AttemptRequest& request, int s
 /// cheap, and a better start. Where it is free, the solve would cost more than the rounds after it gain. There the
 /// curve is only interpolated, to within millimetres, so that the blocked runs stay valid. If no round can be solved
 /// then, the next attempt fixes the arrival.
-ReplanReason PlanAttempt::Refine(const AttemptRequest& request, Posed* posed, Candidate* candidate,
-                                 ReplanResult* result) {
+Refusal PlanAttempt::Refine(const AttemptRequest& request, Posed* posed, Candidate* candidate,
+                            ReplanResult* result) {
   first_curve_ = candidate->pair.curve;
   const bool interpolates = request.arrival == ArrivalMode::kFree && options_.max_rebinds > 0 &&
                             options_.problem.endpoint == EndpointMode::kEliminated;
   if (!interpolates) {
-    const ReplanReason reason =
+    const Refusal refusal =
         SolveWithoutPairs(request, request.near_segments, &first_curve_, posed, candidate, result);
-    if (reason != ReplanReason::kSolverFailed) return reason;
+    if (refusal != ReplanReason::kSolverFailed) return refusal;
     // The coarse ones are used.
     return SolveWithoutPairs(request, request.segments, &first_curve_, posed, candidate, result);
   }
@@ -251,7 +245,7 @@ ReplanReason PlanAttempt::LayPath(const AttemptRequest& request, const BlockedRu
 
 /// The committed plan is the best known. Its rest, bound as before, but to the present map, takes one solve while it
 /// holds. New obstacles on it need further rounds.
-ReplanReason PlanAttempt::KeepCommitted(const AttemptRequest& request, ReplanResult* result) {
+Refusal PlanAttempt::KeepCommitted(const AttemptRequest& request, ReplanResult* result) {
   KeepPath(request, result);
   if (!kept_.known()) return ReplanReason::kCollisionRemains;
   Posed posed;
@@ -267,8 +261,7 @@ ReplanReason PlanAttempt::KeepCommitted(const AttemptRequest& request, ReplanRes
 
 /// One way leads past all obstacles, so that one detour does not lead into the next. Ways differ in how they pass the
 /// first obstacle.
-ReplanReason PlanAttempt::TryPaths(const AttemptRequest& asked, Posed* posed,
-                                   ReplanResult* result) {
+Refusal PlanAttempt::TryPaths(const AttemptRequest& asked, Posed* posed, ReplanResult* result) {
   AttemptRequest request = asked;
   if (!request.previous) posed->prepared->first_guess = posed->prepared->start.y;
   first_curve_ = best_.pair.curve;
@@ -287,7 +280,7 @@ ReplanReason PlanAttempt::TryPaths(const AttemptRequest& asked, Posed* posed,
   const int rescues = keeps_side ? 2 : 1;
   double first_cost = kNoBound;
   for (int i = 0;; ++i) {
-    const bool planned = i > 0 && best_.reason == ReplanReason::kNone;
+    const bool planned = i > 0 && best_.refusal == ReplanReason::kNone;
     if (i > 0 && (first.at_start || i >= (planned ? options_.max_guides : rescues))) break;
     const bool kept = i == 0 && keeps_side;
     if (!kept) {
@@ -303,7 +296,7 @@ ReplanReason PlanAttempt::TryPaths(const AttemptRequest& asked, Posed* posed,
     Candidate* candidate = i == 0 ? &best_ : &other_;
     posed->prepared->start.y = posed->prepared->first_guess;
     Begin(candidate);
-    candidate->reason = Follow(request, way, {}, kNoBound, *posed, candidate, result);
+    candidate->refusal = Follow(request, way, {}, kNoBound, *posed, candidate, result);
     if (i > 0 && Better(other_, best_, keeps_side)) std::swap(best_, other_);
     if (spent_) break;
     way.Sample(way.bound().back().from, way.bound().back().to, &path_);
@@ -312,7 +305,7 @@ ReplanReason PlanAttempt::TryPaths(const AttemptRequest& asked, Posed* posed,
     if (!barrier) break;
     finder_.Close(*barrier);
   }
-  return best_.reason;
+  return best_.refusal;
 }
 
 /// The path around takes longer than the straight one: by its extra length at full speed. A committed arrival is not
@@ -338,9 +331,9 @@ void PlanAttempt::Postpone(const TimedPath& way, Posed* posed, AttemptRequest* r
 /// Binds control points along the way and solves, until the curve is clear, or hardly clearer than before. The first
 /// round binds the parts of the way that need it, and `more`; later ones what is still blocked. A plan must end
 /// before `latest` after the start [s].
-ReplanReason PlanAttempt::Follow(const AttemptRequest& request, const TimedPath& way,
-                                 const BoundParts& more, double latest, const Posed& posed,
-                                 Candidate* candidate, ReplanResult* result) {
+Refusal PlanAttempt::Follow(const AttemptRequest& request, const TimedPath& way,
+                            const BoundParts& more, double latest, const Posed& posed,
+                            Candidate* candidate, ReplanResult* result) {
   binder_.Begin(posed.segments + 3);
   double blocked = std::numeric_limits<double>::infinity();
   for (int round = 1; round <= options_.max_rebinds; ++round) {
@@ -356,20 +349,20 @@ ReplanReason PlanAttempt::Follow(const AttemptRequest& request, const TimedPath&
       binder_.Bind(*request.space, &candidate->pairs);
     }
     ++result->rebinds;
-    const ReplanReason reason = Solve(request, posed, candidate, result);
-    if (reason != ReplanReason::kNone) return reason;
+    const Refusal refusal = Solve(request, posed, candidate, result);
+    if (refusal != ReplanReason::kNone) return refusal;
     if (candidate->pair.curve.duration() > latest) return ReplanReason::kCollisionRemains;
     // If only the start is blocked, the certificate decides: it may be an escape.
     const auto& runs = candidate->blocked;
     const bool only_start = runs.size() == 1 && runs.front().at_start;
     if (runs.empty() || only_start) {
-      const ReplanReason end = KeepLimits(request, posed, candidate, result);
+      const Refusal end = KeepLimits(request, posed, candidate, result);
       if (runs.empty() || (runs.size() == 1 && runs.front().at_start)) return end;
     }
     const double before = std::exchange(blocked, BlockedTime(runs));
     if (blocked > options_.constants.blocked_share_left * before) break;
   }
-  return Finish(request, candidate, result);
+  return Finish(request, posed, candidate, result);
 }
 
 /// Leads blocked parts to the way, with a plane at the corner that is cut.
@@ -387,8 +380,8 @@ ReplanReason PlanAttempt::BindBlocked(const AttemptRequest& request, const Timed
 }
 
 /// Solves with the candidate's pairs and pressure, and checks its curve.
-ReplanReason PlanAttempt::Solve(const AttemptRequest& request, const Posed& posed,
-                                Candidate* candidate, ReplanResult* result) {
+Refusal PlanAttempt::Solve(const AttemptRequest& request, const Posed& posed, Candidate* candidate,
+                           ReplanResult* result) {
   PreparedProblem& prepared = *posed.prepared;
   LandingProblem& problem = *prepared.problem;
   problem.SetPairs(candidate->pairs);
@@ -426,11 +419,11 @@ ReplanReason PlanAttempt::Solve(const AttemptRequest& request, const Posed& pose
                                    {},
                                    finder_.paths_closed()});
   }
-  candidate->forbidden_by = TermBroken(prepared.solver, problem);
-  if (!prepared.solver.usable()) return ReplanReason::kSolverFailed;
+  const Refusal failed(ReplanReason::kSolverFailed, TermBroken(prepared.solver, problem));
+  if (!prepared.solver.usable()) return failed;
   prepared.start.y = prepared.solver.x;
   problem.Curve(prepared.start.y, &candidate->pair.curve);
-  if (!IsWalkable(candidate->pair.curve)) return ReplanReason::kSolverFailed;
+  if (!IsWalkable(candidate->pair.curve)) return failed;
   if (!candidate->pairs.empty()) binder_.Remember(candidate->pair.curve, &candidate->bound);
   candidate->solved = true;
   {
@@ -445,31 +438,27 @@ ReplanReason PlanAttempt::Solve(const AttemptRequest& request, const Posed& pose
 }
 
 /// Certifies a clear candidate. If only limits are exceeded, raises their weights and solves again.
-ReplanReason PlanAttempt::KeepLimits(const AttemptRequest& request, const Posed& posed,
-                                     Candidate* candidate, ReplanResult* result) {
+Refusal PlanAttempt::KeepLimits(const AttemptRequest& request, const Posed& posed,
+                                Candidate* candidate, ReplanResult* result) {
   for (int round = 0;; ++round) {
-    const ReplanReason reason = Finish(request, candidate, result);
+    const Refusal refusal = Finish(request, posed, candidate, result);
     const bool soft = options_.problem.limits_mode == LimitsMode::kSoft;
-    if (reason != ReplanReason::kLimitsExceeded || !soft ||
+    if (refusal != ReplanReason::kLimitsExceeded || !soft ||
         round == options_.constants.limit_rounds)
-      return reason;
+      return refusal;
     const double share = ShareOfLimits(*candidate->certificate, request.limits);
     candidate->pressure.limits *=
         share > options_.constants.limit_far
             ? options_.constants.limit_growth * options_.constants.limit_growth
             : options_.constants.limit_growth;
     // If the solver fails under the pressure, the last curve is kept.
-    const std::string_view forbidden_by = candidate->forbidden_by;
-    if (Solve(request, posed, candidate, result) != ReplanReason::kNone) {
-      candidate->forbidden_by = forbidden_by;
-      return reason;
-    }
+    if (Solve(request, posed, candidate, result) != ReplanReason::kNone) return refusal;
   }
 }
 
 /// Certifies a candidate that has been solved for the last time.
-ReplanReason PlanAttempt::Finish(const AttemptRequest& request, Candidate* candidate,
-                                 ReplanResult* result) {
+Refusal PlanAttempt::Finish(const AttemptRequest& request, const Posed& posed, Candidate* candidate,
+                            ReplanResult* result) {
   StageTimer timer(&result->times.certificate, StageTimer::kWhileLogged);
   const UniformBspline& curve = candidate->pair.curve;
   const SplineState wanted = EndStateAt(*request.pad, request.target, curve.t_end()).state;
@@ -492,10 +481,13 @@ ReplanReason PlanAttempt::Finish(const AttemptRequest& request, Candidate* candi
     return candidate->blocked.front().at_start ? ReplanReason::kStartBlocked
                                                : ReplanReason::kCollisionRemains;
   }
-  if (!certificate.start_met() || !certificate.endpoint_met()) return ReplanReason::kSolverFailed;
+  const std::string_view term = TermBroken(candidate->solver, *posed.prepared->problem);
+  if (!certificate.start_met() || !certificate.endpoint_met()) {
+    return {ReplanReason::kSolverFailed, term};
+  }
   if (certificate.limits_kept && rows_kept) return ReplanReason::kUnobserved;
-  if (rows_kept) candidate->forbidden_by = LimitBroken(certificate, request.limits);
-  return ReplanReason::kLimitsExceeded;
+  return {ReplanReason::kLimitsExceeded,
+          rows_kept ? LimitBroken(certificate, request.limits) : term};
 }
 
 /// Without the terms whose weights grow from round to round.
@@ -508,8 +500,8 @@ double PlanAttempt::CostOfShape(const solvers::SolverSummary& solver) const {
 }
 
 bool PlanAttempt::Better(const Candidate& a, const Candidate& b, bool keeps_side) const {
-  if (a.reason != ReplanReason::kNone) return false;
-  if (b.reason != ReplanReason::kNone) return true;
+  if (a.refusal != ReplanReason::kNone) return false;
+  if (b.refusal != ReplanReason::kNone) return true;
   const double share = keeps_side ? options_.constants.side_change_ratio : 1.0;
   return CostOfShape(a.solver) < share * CostOfShape(b.solver);
 }

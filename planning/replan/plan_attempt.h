@@ -44,6 +44,15 @@ struct AttemptRequest {
   AttemptLog* log = nullptr;  ///< filled if not null (allocates)
 };
 
+/// Why there is no plan; kNone: there is one.
+struct Refusal {
+  Refusal(ReplanReason why, std::string_view by = {})
+      : reason(why), forbidden_by(by) {}            // NOLINT: a reason is one
+  operator ReplanReason() const { return reason; }  // NOLINT
+  ReplanReason reason;
+  std::string_view forbidden_by;  ///< as in ReplanResult
+};
+
 /// One attempt at a plan, in stages (plan_attempt.cc). It poses the problem, solves it without obstacles, and lays
 /// ways past what blocks that. It follows each with pairs that are bound along it until the curve is clear. It
 /// certifies, and chooses the cheapest that is certified. Another side than the one flown already has to be much
@@ -102,38 +111,37 @@ class PlanAttempt {
     BoundParts bound;
     bool solved = false;
     int round = -1;  // of the log
-    ReplanReason reason = ReplanReason::kNone;
-    std::string_view forbidden_by;  // as in ReplanResult
+    Refusal refusal = ReplanReason::kNone;
   };
 
   static void Begin(Candidate* candidate);
 
-  ReplanReason Try(const AttemptRequest& request, ReplanResult* result);
-  ReplanReason FindAnew(const AttemptRequest& request, const UniformBspline* warm,
-                        bool leads_around, ReplanResult* result);
+  Refusal Try(const AttemptRequest& request, ReplanResult* result);
+  Refusal FindAnew(const AttemptRequest& request, const UniformBspline* warm, bool leads_around,
+                   ReplanResult* result);
 
   ReplanReason Pose(const AttemptRequest& request, int segments, Posed* posed);
-  ReplanReason SolveWithoutPairs(const AttemptRequest& request, int segments,
-                                 const UniformBspline* guess, Posed* posed, Candidate* candidate,
-                                 ReplanResult* result);
-  ReplanReason Refine(const AttemptRequest& request, Posed* posed, Candidate* candidate,
-                      ReplanResult* result);
+  Refusal SolveWithoutPairs(const AttemptRequest& request, int segments,
+                            const UniformBspline* guess, Posed* posed, Candidate* candidate,
+                            ReplanResult* result);
+  Refusal Refine(const AttemptRequest& request, Posed* posed, Candidate* candidate,
+                 ReplanResult* result);
   void KeepPath(const AttemptRequest& request, ReplanResult* result);
   ReplanReason LayPath(const AttemptRequest& request, const BlockedRun& span, double max_cost,
                        ReplanResult* result);
   void Postpone(const TimedPath& way, Posed* posed, AttemptRequest* request);
-  ReplanReason KeepCommitted(const AttemptRequest& request, ReplanResult* result);
-  ReplanReason TryPaths(const AttemptRequest& request, Posed* posed, ReplanResult* result);
-  ReplanReason Follow(const AttemptRequest& request, const TimedPath& way, const BoundParts& more,
-                      double latest, const Posed& posed, Candidate* candidate,
-                      ReplanResult* result);
+  Refusal KeepCommitted(const AttemptRequest& request, ReplanResult* result);
+  Refusal TryPaths(const AttemptRequest& request, Posed* posed, ReplanResult* result);
+  Refusal Follow(const AttemptRequest& request, const TimedPath& way, const BoundParts& more,
+                 double latest, const Posed& posed, Candidate* candidate, ReplanResult* result);
   ReplanReason BindBlocked(const AttemptRequest& request, const TimedPath& way,
                            const Candidate& candidate);
-  ReplanReason Solve(const AttemptRequest& request, const Posed& posed, Candidate* candidate,
+  Refusal Solve(const AttemptRequest& request, const Posed& posed, Candidate* candidate,
+                ReplanResult* result);
+  Refusal KeepLimits(const AttemptRequest& request, const Posed& posed, Candidate* candidate,
                      ReplanResult* result);
-  ReplanReason KeepLimits(const AttemptRequest& request, const Posed& posed, Candidate* candidate,
-                          ReplanResult* result);
-  ReplanReason Finish(const AttemptRequest& request, Candidate* candidate, ReplanResult* result);
+  Refusal Finish(const AttemptRequest& request, const Posed& posed, Candidate* candidate,
+                 ReplanResult* result);
   double CostOfShape(const solvers::SolverSummary& solver) const;
   bool Better(const Candidate& a, const Candidate& b, bool keeps_side) const;
 

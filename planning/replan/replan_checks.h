@@ -14,8 +14,8 @@ void Validate(const ReplannerOptions& options);
 /// The times and the vehicle's state can be used: finite, ordered, and within a vehicle's possible range and speed.
 const char* WrongInState(const ReplanInput& input);
 
-/// The pad is known, and its states at the start and `horizon` [s] after it can be used: a plan may end at each time
-/// between.
+/// The pad is known, and its states at the start and `horizon` [s] after it, the latest end of a plan, can be used. Those
+/// between are not asked for.
 const char* WrongInPad(const ReplanInput& input, double horizon);
 
 /// The pad and the endpoint can be used.

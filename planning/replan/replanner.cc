@@ -22,6 +22,7 @@
 #include "planning/search/timed_path.h"
 #include "touchdown/planning/replan/attempt_ladder.h"
 #include "touchdown/planning/replan/stage_timer.h"
+#include "touchdown/planning/spline/rest_trajectory.h"
 
 namespace touchdown::planning {
 
@@ -85,6 +86,18 @@ class Replanner::Impl {
       fallback_.Forget();
       Fallback::FlyStop(next_, t, HullSpace{}, &result_);
     }
+  }
+
+  void CommitStop(const FlatState& from, double t) {
+    MakeRestTrajectory(ToSpline(from), t, Eigen::Vector3d::Zero(), options_.limits, &next_.curve);
+    next_.t_stop = std::numeric_limits<double>::infinity();
+    next_.proven = planned_before_ = false;
+    next_.from_unknown = true;
+    current_ = next_;
+    takes_over_ = t;
+    asked_t_.reset();
+    unfinished_.reset();
+    fallback_.Forget();
   }
 
   /// The pair that is flown at time t.
@@ -520,6 +533,8 @@ void Replanner::CommitHover(const Eigen::Vector3d& p_W, double t) {
   hover.current.curve = hover.next.curve = UniformBspline(points, 1.0, t);
   impl_->Restore(hover);
 }
+
+void Replanner::CommitStop(const FlatState& from, double t) { impl_->CommitStop(from, t); }
 
 const ReplanResult& Replanner::Replan(const ReplanInput& input, const OccupancyMap& map) {
   return impl_->Replan(input, map);

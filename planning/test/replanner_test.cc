@@ -17,6 +17,7 @@
 #include "planning/replan/replan_checks.h"
 #include "planning/test/replanner_fixtures.h"
 #include "touchdown/planning/replan/span_log.h"
+#include "touchdown/solvers/allocation_count.h"
 
 namespace touchdown::planning {
 namespace {
@@ -383,8 +384,7 @@ TEST(Replanner, ACutSolveThatViolatesARowIsNoPlan) {
 
 // What forbids the first plan, in the answer and in the log of its last attempt.
 std::string ForbiddenBy(const ReplannerOptions& options, const solvers::BackendRegistry& backends,
-                        ReplanReason reason) {
-  const OccupancyMap map = ObservedMap();
+                        ReplanReason reason, const OccupancyMap& map = ObservedMap()) {
   const ArcPad pad({5.0, 0.0, 0.3}, 0.5, 0.0, 0.0);
   const Eigen::Vector3d start(-4.0, 0.0, 1.5);
   Replanner replanner(options, backends);
@@ -443,6 +443,24 @@ TEST(Replanner, ARefusedPlanNamesTheTermThatForbidsIt) {
   EXPECT_EQ(ForbiddenBy(options, OnlyCut(0.0), ReplanReason::kLimitsExceeded), "tilt_limit");
 }
 
+// Nobody reads in flight what failed, so it is not put into words.
+TEST(Replanner, AStepWhoseSolvesFailDoesNotAllocate) {
+  if (solvers::AllocationCount() < 0) GTEST_SKIP() << "a sanitizer owns the heap";
+  const OccupancyMap map = ObservedMap();
+  const ArcPad pad({5.0, 0.0, 0.3}, 0.5, 0.0, 0.0);
+  const Eigen::Vector3d start(-4.0, 0.0, 1.5);
+  Replanner replanner(WithOwnTerm(std::nan(""), false), solvers::StandardBackends());
+  replanner.CommitHover(start, 0.0);
+  long allocated = 0;
+  for (int k = 0; k < 5; ++k) {
+    const ReplanInput input = Input(start, pad, 0.1 * k);
+    const long before = solvers::AllocationCount();
+    EXPECT_EQ(replanner.Replan(input, map).reason, ReplanReason::kSolverFailed);
+    if (k > 0) allocated += solvers::AllocationCount() - before;
+  }
+  EXPECT_EQ(allocated, 0);
+}
+
 // The certificate forbids what no row does.
 TEST(Replanner, ARefusedPlanNamesTheLimitThatForbidsIt) {
   ReplannerOptions options = Options(ArrivalMode::kFixed);
@@ -454,6 +472,19 @@ TEST(Replanner, ARefusedPlanNamesTheLimitThatForbidsIt) {
   options.max_iterations = 1;
   options.max_duration = 6.0;
   EXPECT_EQ(ForbiddenBy(options, OnlyCut(0.0), ReplanReason::kLimitsExceeded), "limits.speed");
+}
+
+// The cut solve's point violates a row, and stays in the wall.
+TEST(Replanner, WhereAnObstacleForbidsAPlanNoTermDoes) {
+  OccupancyMap map = ObservedMap();
+  for (double y = -1.0; y < 1.0; y += 0.1) {
+    for (double z = 0.0; z < 2.0; z += 0.1) map.SetOccupied({0.0, y, z});
+  }
+  ReplannerOptions options = Options(ArrivalMode::kFixed);
+  options.backend = "cut";
+  options.problem.vehicle.tilt_max = 0.02;
+  options.problem.settings = {{"tilt_limit", {}, true, {}}};
+  EXPECT_EQ(ForbiddenBy(options, OnlyCut(0.0), ReplanReason::kCollisionRemains, map), "");
 }
 
 TEST(Replanner, ACutSolveThatStartsElsewhereIsNoPlan) {

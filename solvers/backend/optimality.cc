@@ -234,7 +234,7 @@ bool OptimalityCheck::FactorRows() {
 }
 
 /// step_ = the shortest way onto the rows that weigh, which are off_ by so much.
-void OptimalityCheck::StepOntoRows() {
+void OptimalityCheck::ShortestStep() {
   std::fill(step_.begin(), step_.end(), 0.0);
   for (int r = 0; r < rows_.size(); ++r) {
     if (weight_[r] == 0.0) continue;
@@ -245,37 +245,61 @@ void OptimalityCheck::StepOntoRows() {
   factor_.Solve(step_.data());
 }
 
-bool OptimalityCheck::LeadsToFeasible(const View& view, const Eigen::VectorXd& y,
-                                      const MustStop& must_stop, ViewEvaluation* storage) {
+OptimalityCheck::Foot OptimalityCheck::StepOntoRows(const View& view, const Eigen::VectorXd& y,
+                                                    const MustStop& must_stop,
+                                                    ViewEvaluation* storage) {
   foot_ = y;
+  bool least = false;
   // Where slopes vanish no step leads on. Beside such a point they do not.
   for (const double beside : kNudges) {
     for (double& x : foot_) x += beside * (1.0 + std::abs(x));
     view.MoveIntoBounds(foot_.data());
     for (int i = 0; i < kMostRowSteps && Begin(view, foot_, must_stop, storage); ++i) {
-      if (Violation(u_) <= Optimality::kFeasible) return true;
-      if (!StepsCloser()) break;
+      if (Violation(u_) <= Optimality::kFeasible) return Foot::kMeets;
+      if (rows_.constant_violation() > Optimality::kFeasible) return Foot::kLeast;
+      if (!StepsCloser(&least)) break;
       std::copy(near_.begin(), near_.end(), foot_.data());
     }
   }
-  return false;
+  return least ? Foot::kLeast : Foot::kUnknown;
 }
 
-/// near_ = a step from y that meets the rows better, or a part of it.
-bool OptimalityCheck::StepsCloser() {
+/// near_ = a step from y that meets the rows better, or a part of it. `least` is set where even the shortest does not.
+bool OptimalityCheck::StepsCloser(bool* least) {
   const double before = SquaredViolation(u_);
-  WeighRows(Kept::kAtBounds);
-  if (!std::isfinite(before) || !FactorRows()) return false;
   for (int r = 0; r < rows_.size(); ++r) off_[r] = Beyond(r, u_[r]);
-  StepOntoRows();
+  WeighRows(Kept::kAtBounds);
+  ReleaseBounds();
+  if (!std::isfinite(before) || !FactorRows()) return false;
+  ShortestStep();
+  bool seen = false;
   for (const double reach : kReaches) {
     MoveAway(reach, step_);
     view_->MoveIntoBounds(near_.data());
-    if (!Evaluate(near_.data(), {}, {})) continue;
+    seen = Evaluate(near_.data(), {}, {});
+    if (!seen) continue;
     rows_.Values(*at_, u_near_.data());
     if (SquaredViolation(u_near_) <= (1.0 - kCloser * reach) * before) return true;
   }
+  *least = *least || seen;
   return false;
+}
+
+/// Bounds of variables that meet the rows better within them do not weigh.
+void OptimalityCheck::ReleaseBounds() {
+  std::fill(step_.begin(), step_.end(), 0.0);  // down the slope of what rows are off
+  for (int r = 0; r < rows_.first_bound(); ++r) {
+    if (weight_[r] == 0.0) continue;
+    for (int k = rows_.start(r); k < rows_.start(r + 1); ++k) {
+      step_[rows_.column(k)] -= weight_[r] * jacobian_[k] * off_[r];
+    }
+  }
+  for (int r = rows_.first_bound(); r < rows_.size(); ++r) {
+    const double way = step_[rows_.column(rows_.start(r))];
+    const Side side = SideOf(r);
+    if ((side == Side::kLower && way > 0.0) || (side == Side::kUpper && way < 0.0))
+      weight_[r] = 0.0;
+  }
 }
 
 /// near_ = y + share x way, which is in variables over their sizes.

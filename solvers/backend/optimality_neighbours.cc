@@ -217,7 +217,7 @@ bool OptimalityCheck::EvaluateOnRows() {
       if (weight_[r] == 0.0) return false;  // of a row that is far from y nothing leads back
     }
     if (most <= kOnRows) return true;
-    StepOntoRows();
+    ShortestStep();
     for (std::size_t k = 0; k < near_.size(); ++k) near_[k] += size_[k] * step_[k];
   }
   return false;

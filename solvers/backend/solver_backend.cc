@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 #include <stdexcept>
 
@@ -83,23 +84,49 @@ void SolverBackend::Reserve(const View& view, SolverResult* result) {
 
 namespace {
 
-/// Which term, why, and where.
-std::string WhatFailed(const Problem& problem, const ViewEvaluation& at) {
-  constexpr std::size_t kMostNumbers = 6;
-  const Evaluation& full = at.full;
+/// The first with a value or slope that is not finite; -1: none.
+int FailedWindow(const TermBlock& block, int variables) {
+  const auto finite = [](double a) { return std::isfinite(a); };
+  for (int row = 0; row < block.rows(); ++row) {
+    const double* du = block.slopes(row);
+    if (!finite(block.u[row]) || !std::all_of(du, du + variables, finite)) {
+      return block.window_of(row);
+    }
+  }
+  return -1;
+}
+
+/// Which term, why, and where. Evaluates again what threw.
+std::string WhatFailed(const Problem& problem, ViewEvaluation* at) {
+  constexpr std::size_t kMostNumbers = 12;
+  Evaluation& full = at->full;
+  std::size_t from = 0, to = at->x.size();
   std::ostringstream text;
   if (full.failed_term >= 0) {
-    text << "term " << problem.term(full.failed_term).info().name;
+    const Term& term = problem.term(full.failed_term);
+    text << "term " << term.info().name;
+    TermBlock& block = full.terms[static_cast<std::size_t>(full.failed_term)];
+    if (!full.failure.empty()) {
+      std::fill(block.u.begin(), block.u.end(), std::numeric_limits<double>::quiet_NaN());
+      problem.Evaluate(at->x.data(), at->h, {}, {}, &full);
+    }
+    const int window = FailedWindow(block, term.shape().variables());
+    if (window >= 0 && block.windows > 1) text << ", window " << window;
+    if (window >= 0) {
+      const int first = block.first_block[window], d = term.shape().block_size;
+      from = static_cast<std::size_t>(first * d);
+      to = std::min(to, static_cast<std::size_t>((first + term.shape().window) * d));
+    }
   } else {
     text << "the gradient";
   }
   text << (full.failure.empty() ? " is not finite" : ": " + full.failure) << ", at (";
-  for (std::size_t i = 0; i < std::min(kMostNumbers, at.x.size()); ++i) {
-    text << (i > 0 ? ", " : "") << at.x[i];
+  for (std::size_t i = from; i < std::min(from + kMostNumbers, to); ++i) {
+    text << (i > from ? ", " : "") << at->x[i];
   }
-  if (at.x.size() > kMostNumbers) text << ", ... of " << at.x.size() << " numbers";
+  if (to - from > kMostNumbers) text << ", ... of " << to - from << " numbers";
   text << ')';
-  if (problem.shape().free_interval) text << " and interval " << at.h;
+  if (problem.shape().free_interval) text << " and interval " << at->h;
   return text.str();
 }
 
@@ -191,8 +218,8 @@ void SolverBackend::Solve(const View& view, const WarmStart& warm, const Stop& s
   if (!evaluator_.has_best()) result->status = SolveStatus::kEvaluationFailed;
   result->worst_term = evaluator_.worst_term();
   if (result->status == SolveStatus::kEvaluationFailed) {
-    result->message = WhatFailed(view.problem(), evaluator_.last());
     result->worst_term = evaluator_.last().full.failed_term;
+    if (stop.confirm) result->message = WhatFailed(view.problem(), evaluator_.mutable_last());
   }
 
   result->optimality = {};
@@ -224,8 +251,16 @@ void SolverBackend::Judge(const View& view, const Eigen::VectorXd& start, Solver
   const bool gave_up = *status == SolveStatus::kNumericalFailure && evaluator_.has_best() &&
                        evaluator_.best_violation() > Evaluator::kFeasible;
   if (*status == SolveStatus::kInfeasible || gave_up) {
-    const bool met = check_.LeadsToFeasible(view, evaluator_.best(), must_stop, storage);
-    *status = met ? SolveStatus::kNumericalFailure : SolveStatus::kInfeasible;
+    using Foot = OptimalityCheck::Foot;
+    const Foot foot = check_.StepOntoRows(view, evaluator_.best(), must_stop, storage);
+    const bool least = foot == Foot::kLeast;
+    if (least == gave_up) {  // the backend's words are of another status
+      result->message = least ? "no step meets the constraints better"
+                        : foot == Foot::kMeets
+                            ? "gave up; steps lead to a point that meets the constraints"
+                            : "gave up; whether constraints can be met is not known";
+    }
+    *status = least ? SolveStatus::kInfeasible : SolveStatus::kNumericalFailure;
     if (evaluator_.CheckClock()) *status = evaluator_.stop_status();
   } else if (*status == SolveStatus::kConverged || *status == SolveStatus::kUnconfirmed) {
     const Optimality at =

@@ -20,7 +20,8 @@ namespace {
 constexpr std::array<double, 4> kSteps = {-2.0, -1.0, 1.0, 2.0};
 constexpr std::array<double, 4> kWeights = {1.0 / 12.0, -8.0 / 12.0, 8.0 / 12.0, -1.0 / 12.0};
 
-constexpr double kSlopeError = 1e-11;  // of u whose fifth derivative is some hundred times u over scale^5
+// Of u whose fifth derivative is some hundred times u over scale^5.
+constexpr double kSlopeError = 1e-11;
 
 // Steps where truncation and rounding are of one size: of the above, of a first difference of
 // slopes, of a second difference.
@@ -182,7 +183,8 @@ class BatchTerm::Differences {
   Bounded At(int k, int i) const {
     const int block = first_block_[static_cast<std::size_t>(k)];
     const int x = block * term_.shape_.block_size + i;
-    return {q_[static_cast<std::size_t>(k * v_ + i)], input_.lower ? input_.lower[x] : -Bounded::kNone,
+    return {q_[static_cast<std::size_t>(k * v_ + i)],
+            input_.lower ? input_.lower[x] : -Bounded::kNone,
             input_.upper ? input_.upper[x] : Bounded::kNone};
   }
   Bounded Interval() const { return {h_, input_.h_lower, input_.h_upper}; }
@@ -264,8 +266,9 @@ class BatchTerm::Differences {
         SetSlopes(
             [&](int k, int c, int i) {
               const double known = block->slopes(k * m_ + c)[i];
-              if (std::isfinite(known)) return known;
-              if (!HasRoom(k, i, std::min(0.0, 4.0 * side), std::max(0.0, 4.0 * side))) return known;
+              const double last = 4.0 * side;
+              const bool has_room = HasRoom(k, i, std::min(0.0, last), std::max(0.0, last));
+              if (std::isfinite(known) || !has_room) return known;
               double sum = 0.0;
               for (int s = 0; s < kCopies; ++s)
                 sum += kSideWeights[s] * u[Row(kCopies * i + s, k, c)];

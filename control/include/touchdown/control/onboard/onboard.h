@@ -24,9 +24,10 @@ namespace touchdown::control {
 
 /// What the vehicle is to do from now on, at three depths. A vehicle with an autopilot takes the middle or the last.
 struct Setpoint {
-  double t = 0.0;                ///< of the Step that made it [s]
+  double t = 0.0;                ///< of the last Step that was not refused [s]
   double valid_until = 0.0;      ///< later nobody may fly it: what it answers is too long ago [s]
-  bool armed = true;             ///< false: the rotors are to stand still
+  bool armed = true;             ///< false: the rotors are to stand still, however old it is
+  bool level = false;            ///< made without an own state or a time: hover thrust, no moment
   estimation::Commands thrusts;  ///< of the actuators, in the model's order [N], of moments [N m]
   bool saturated = false;        ///< of those, one is at a limit
   Wrench wrench;                 ///< collective thrust and moment
@@ -34,10 +35,10 @@ struct Setpoint {
   planning::FlatState reference;                       ///< p, v, a, j, yaw of the committed plan
 
   /// It may be flown now, by the caller's clock [s]. Else the vehicle levels out by its own means, with hover thrust.
-  bool CountsAt(double now) const { return now <= valid_until; }
+  bool CountsAt(double now) const { return !armed || (now >= t && now <= valid_until); }
 };
 
-/// How it stands at the end of the last Step. If that was refused, all but its time is as before.
+/// How it stands at the end of the last Step. If that was refused, only `time` and `mission_step` (false) are new.
 struct OnboardStatus {
   StepTime time = StepTime::kGood;  ///< what became of the last Step's time
   MissionOutputs mission;           ///< mode, and of the last step of the mission why it changed
@@ -106,9 +107,10 @@ class Onboard {
   void Begin(double t, const estimation::Commands& thrusts);
 
   /// The set-point for the time t [s], later than that of the last step by at most 0.1 s. A step at another time is
-  /// refused: the last set-point again, after 50 in a row a level one. But the fifth of those that go on from each other
-  /// by at most 0.1 s is taken. If it is later by at most 10 s, that time has passed; else t is of another clock, and
-  /// none has passed. Given own states are forgotten then. Before Begin: the rotors stand still.
+  /// refused: the last set-point again, after 50 in a row a level one. Until one is taken, measurements of pad and depth
+  /// are invalid. The fifth of those that go on from each other by at most 0.1 s is taken. If it is later by at most
+  /// 10 s, that time has passed; else t may be of another clock, and 10 s count as passed. Then given own states are
+  /// forgotten, and the committed plan is lost. Before Begin: the rotors stand still.
   const Setpoint& Step(double t);
   /// How many steps were judged how, by StepTime.
   const std::array<int, kStepTimes>& steps() const;

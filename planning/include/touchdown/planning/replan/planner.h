@@ -21,6 +21,10 @@ class Planner {
   /// The vehicle hovers at p_W from t on: the first committed trajectory.
   virtual void CommitHover(const Eigen::Vector3d& p_W, double t) = 0;
 
+  /// What is committed is lost: from position, velocity and acceleration at t on the vehicle brakes, unproven, until an
+  /// answer takes over.
+  virtual void CommitStop(const FlatState& from, double t) { CommitHover(from.p_WB, t); }
+
   /// One replanning step against the map. The result stays valid until the next call. It says whether a new answer is
   /// `committed`, or that there was nothing to do (`idle`). A planner with a rate of its own may be asked before an
   /// answer has taken over.

@@ -51,6 +51,9 @@ class Replanner : public Planner {
   /// The vehicle hovers at p_W from t on: the first committed trajectory.
   void CommitHover(const Eigen::Vector3d& p_W, double t) override;
 
+  /// Does not allocate.
+  void CommitStop(const FlatState& from, double t) override;
+
   /// One replanning step against the map. The result stays valid until the next call. Throws std::invalid_argument
   /// before the first CommitHover. The result is a proven flight pair, or says that it is not (docs/safety.md). Nothing can
   /// be proven in cells that the map has not observed. So a map that was filled by hand needs MarkFree, one of a

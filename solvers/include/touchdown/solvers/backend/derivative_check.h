@@ -23,8 +23,8 @@ struct DerivativeErrors {
 };
 
 /// Checks every derivative that `view` offers at y by central differences. No variable moves by
-/// more than `step`, nor beyond its bounds: nearer to one, the point checked is a step inside. With a `whitening` (set for this view) it checks those of the Whitened view at
-/// z = L^T y. Allocates.
+/// more than `step`, nor beyond its bounds: nearer to one, the point checked is a step inside. With
+/// a `whitening` (set for this view) it checks those of the Whitened view at z = L^T y. Allocates.
 DerivativeErrors CheckDerivatives(const View& view, const Eigen::VectorXd& y,
                                   const Lagrangian& lagrangian = {}, double step = 1e-6,
                                   const Whitening* whitening = nullptr);

@@ -35,11 +35,15 @@ class OptimalityCheck {
   /// convex and quadratic. Infinite where the Lagrangian does not curve upwards. Does not allocate.
   double Above(const View& view, const Eigen::VectorXd& y, ViewEvaluation* storage);
 
-  /// Whether steps along the slopes of the rows (Gauss-Newton's, least squares of what they are
-  /// off) lead from y, or from beside it, to a point that meets them. Then a backend that says they
-  /// cannot be met only gave up. Does not allocate.
-  bool LeadsToFeasible(const View& view, const Eigen::VectorXd& y, const MustStop& must_stop,
-                       ViewEvaluation* storage);
+  /// Where steps along the slopes of the rows end (Gauss-Newton's, least squares of what they are off).
+  enum class Foot {
+    kMeets,    ///< at a point that meets them: a backend that says they cannot be met only gave up
+    kLeast,    ///< where no step meets them better: they cannot be met, as far as is seen from here
+    kUnknown,  ///< elsewhere: stopped, slow, or where rows cannot be evaluated
+  };
+  /// From y, or from beside it. Does not allocate.
+  Foot StepOntoRows(const View& view, const Eigen::VectorXd& y, const MustStop& must_stop,
+                    ViewEvaluation* storage);
 
  private:
   /// At which of its bounds a row is, by its multiplier's sign.
@@ -70,8 +74,9 @@ class OptimalityCheck {
   bool EvaluateHessian(const double* multipliers, const double* weights, double cost_factor);
   void WeighRows(Kept kept);
   bool FactorRows();
-  void StepOntoRows();
-  bool StepsCloser();
+  void ShortestStep();
+  bool StepsCloser(bool* least);
+  void ReleaseBounds();
   void MoveAway(double share, const std::vector<double>& way);
   void Residual(const double* lambda);
   bool HoldRows();

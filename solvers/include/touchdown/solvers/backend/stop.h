@@ -28,7 +28,8 @@ struct Stop {
   /// confirmed. 0: there is no such rule. In [0, 1).
   double gap = 0.0;
   /// Check the point of a backend that says converged (OptimalityCheck). Otherwise the backend's
-  /// claim stands: for callers that judge the point themselves, as a replanning step does.
+  /// claim stands, and no words say what failed: for callers that judge the point themselves, as a
+  /// replanning step does.
   bool confirm = true;
   bool trace = false;   ///< record every iteration in the result (allocates)
   bool shares = false;  ///< time the solve's parts in the result (reads the clock often)
