@@ -64,6 +64,9 @@ struct Knots {
       rows.Refuse("holds control points out of order");
     }
     points.push_back(rows.Vector3());
+    if (points.back().cwiseAbs().maxCoeff() >= planning::kFarthestPlace) {
+      rows.Refuse("holds a control point a million metres away");
+    }
   }
   planning::UniformBspline Curve() const {
     if (std::abs(t0) > kLongest || h * static_cast<double>(points.size()) > kLongest) {

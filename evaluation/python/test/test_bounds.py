@@ -55,6 +55,14 @@ def test_a_comma_in_a_record_ends(bounded, record_path, tmp_path, command):
     refused(bounded(*shlex.split(command)), "a.db")
 
 
+@pytest.mark.parametrize("command", ["replay a.db --html a.html", "profile --from a.db", "plan --from a.db:8"])
+def test_a_curve_that_leaves_the_world_is_refused(bounded, record_path, tmp_path, command):
+    shutil.copy(record_path, tmp_path / "a.db")
+    with sqlite3.connect(tmp_path / "a.db") as db:
+        db.execute("UPDATE state_point SET x = 1e308 WHERE i = 1")
+    refused(bounded(*shlex.split(command)), "a.db: its table state_point")
+
+
 OPENED = {
     "scenario": "land {}",
     "study": "study run {}",
