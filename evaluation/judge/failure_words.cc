@@ -37,8 +37,8 @@ std::string NoPlanSentence(const TrialResult& result, std::string_view last) {
                                  Most("for", reasons));
   if (!last.empty() && last != MostFrequent(reasons)) text += fmt::format(", at last for {}", last);
   if (const StepCounts& terms = result.replans_forbidden_by; !terms.empty()) {
-    text += fmt::format("; {} of them forbidden{}{}", Sum(terms), terms.size() > 1 ? ", " : " ",
-                        Most("by", terms));
+    text += fmt::format("; in {} a plan was forbidden{}{}", Sum(terms),
+                        terms.size() > 1 ? ", " : " ", Most("by", terms));
   }
   return text + ".";
 }

@@ -404,7 +404,8 @@ void CheckPadPath(const ScenarioSource& source, const ObstacleList& obstacles,
         if (gap < half_diagonal) {
           throw BadInput(fmt::format(
               "{}: {} stands on the pad's way: at {:.1f} s its centre passes at {:.3f} m, and the "
-              "deck needs {:.3f} m. Move it, or change the pad's start, heading or speed.",
+              "deck needs {:.3f} m. Move it, or change the pad's start, heading, speed or turn "
+              "rate.",
               source.WhereOf(named.key).ToString(), named.key, t, gap, half_diagonal));
         }
       });

@@ -16,11 +16,12 @@ TEST(FailureWords, TheReasonThatStoodMostIsNamedNotTheLast) {
   EXPECT_EQ(NoPlanSentence(result, ""), " No new plan in 121 of 300 steps, most for goal_blocked.");
   result.replans_by_reason = {{"limits_exceeded", 40}};
   result.replans_forbidden_by = {{"reach", 40}};
-  EXPECT_EQ(NoPlanSentence(result, "limits_exceeded"),
-            " No new plan in 40 of 300 steps, for limits_exceeded; 40 of them forbidden by reach.");
+  EXPECT_EQ(
+      NoPlanSentence(result, "limits_exceeded"),
+      " No new plan in 40 of 300 steps, for limits_exceeded; in 40 a plan was forbidden by reach.");
   result.replans_forbidden_by = {{"limits.speed", 3}, {"reach", 37}};
   EXPECT_EQ(NoPlanSentence(result, "limits_exceeded"),
-            " No new plan in 40 of 300 steps, for limits_exceeded; 40 of them forbidden, "
+            " No new plan in 40 of 300 steps, for limits_exceeded; in 40 a plan was forbidden, "
             "most by reach.");
 }
 

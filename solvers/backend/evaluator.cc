@@ -13,6 +13,7 @@ namespace touchdown::solvers {
 void Evaluator::Prepare(const View& view) {
   view.Resize(&storage_);
   cached_.resize(view.num_variables());
+  failed_.resize(view.num_variables());
   best_.resize(view.num_variables());
   best_cost_by_term_.assign(static_cast<std::size_t>(view.problem().num_terms()), 0.0);
 }
@@ -24,7 +25,7 @@ void Evaluator::Begin(const View& view, const Stop& stop, GapRule* rule) {
   near_enough_ = false;
   cache_valid_ = false;
   evaluations_ = iterations_ = 0;
-  failed_ = false;
+  failures_ = 0;
   stop_status_ = SolveStatus::kConverged;
   has_best_ = false;
   best_cost_ = first_cost_ = best_violation_ = 0.0;
@@ -77,7 +78,10 @@ bool Evaluator::Run(const double* y, bool new_point, Want want, const Lagrangian
     cache_valid_ = view_->Evaluate(y, want, lagrangian, &storage_);
   }
   if (cache_valid_ && new_point) Track();
-  failed_ = failed_ || !cache_valid_;
+  if (!cache_valid_) {
+    ++failures_;
+    failed_ = cached_;
+  }
   if (new_point && !CheckStop()) AskCallback();
   return cache_valid_;
 }

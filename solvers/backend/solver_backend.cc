@@ -219,11 +219,11 @@ void SolverBackend::Solve(const View& view, const WarmStart& warm, const Stop& s
   result->worst_term = evaluator_.worst_term();
   if (result->status == SolveStatus::kEvaluationFailed) {
     result->worst_term = evaluator_.last().full.failed_term;
-    if (stop.confirm) result->message = WhatFailed(view.problem(), evaluator_.mutable_last());
   }
 
   result->optimality = {};
   if (choice && stop.confirm && !evaluator_.near_enough()) Judge(view, warm.y, result);
+  if (stop.confirm) TellFailures(view, result);
 
   result->x = evaluator_.has_best() ? evaluator_.best() : warm.y;
   result->cost = evaluator_.best_cost();
@@ -240,6 +240,21 @@ void SolverBackend::Solve(const View& view, const WarmStart& warm, const Stop& s
   result->evaluations = evaluator_.evaluations();
   result->wall_s = evaluator_.elapsed_s();
   result->cpu_s = ThreadCpuSeconds() - cpu_start;
+}
+
+/// What could not be evaluated, and where, unless that did not matter.
+void SolverBackend::TellFailures(const View& view, SolverResult* result) {
+  if (evaluator_.failures() == 0 || result->status == SolveStatus::kConverged) return;
+  ViewEvaluation* at = evaluator_.mutable_last();
+  if (view.Evaluate(evaluator_.last_failure().data(), {.gradient = true}, {}, at)) return;
+  const std::string what = WhatFailed(view.problem(), at);
+  if (result->status == SolveStatus::kEvaluationFailed) {
+    result->message = what;
+    return;
+  }
+  if (!result->message.empty()) result->message += "; ";
+  result->message +=
+      std::to_string(evaluator_.failures()) + " evaluations failed, the last: " + what;
 }
 
 /// Turns a backend's claim into the final status.

@@ -166,8 +166,8 @@ class CeresLbfgs : public SolverBackend {
         break;
     }
     if (point_.StationaryAtBest(first_cost_)) return SolveStatus::kConverged;
-    return evaluator->evaluation_failed() ? SolveStatus::kEvaluationFailed
-                                          : SolveStatus::kNumericalFailure;
+    return evaluator->failures() > 0 ? SolveStatus::kEvaluationFailed
+                                     : SolveStatus::kNumericalFailure;
   }
 
   WhitenedPoint point_;

@@ -312,8 +312,8 @@ class CeresSolver : public SolverBackend {
       case ceres::NO_CONVERGENCE:
         return SolveStatus::kIterationLimit;
       default:
-        return evaluator.evaluation_failed() ? SolveStatus::kEvaluationFailed
-                                             : SolveStatus::kNumericalFailure;
+        return evaluator.failures() > 0 ? SolveStatus::kEvaluationFailed
+                                        : SolveStatus::kNumericalFailure;
     }
   }
 

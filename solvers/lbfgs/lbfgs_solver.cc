@@ -138,8 +138,8 @@ class LbfgsSolver : public SolverBackend {
     }
     if (evaluator->must_stop()) return evaluator->stop_status();
     if (point_.StationaryAtBest(first_cost)) return SolveStatus::kConverged;
-    return evaluator->evaluation_failed() ? SolveStatus::kEvaluationFailed
-                                          : SolveStatus::kNumericalFailure;
+    return evaluator->failures() > 0 ? SolveStatus::kEvaluationFailed
+                                     : SolveStatus::kNumericalFailure;
   }
 
   WhitenedPoint point_;

@@ -693,6 +693,32 @@ TEST_P(ClaimsOfEveryBackend, WhereItFailedIsNamed) {
   }
 }
 
+/// Known up to x = 1 alone, and falls beyond.
+struct Cliff {
+  static constexpr int kBlockSize = 1, kWindow = 1, kOutputs = 1;
+  static constexpr bool kUsesInterval = false, kLinearInBlocks = false;
+  int windows() const { return 1; }
+  int first_block(int) const { return 0; }
+  template <class T>
+  void operator()(int, const T* q, const T&, const T&, T* u) const {
+    if (!(q[0] <= 1.0)) throw std::range_error("beyond the cliff");
+    u[0] = q[0] - 3.0;
+  }
+};
+
+TEST_P(ClaimsOfEveryBackend, WhatFailedAfterTheStartIsTold) {
+  TermInfo info;
+  info.name = "cliff";
+  Problem problem({.blocks = 1, .block_size = 1});
+  problem.AddTerm(
+      std::make_unique<WindowTerm<Cliff, SquareLoss>>(info, Cliff(), SquareLoss(1.0), 1),
+      Role::kCost);
+  const SolverResult result = Solve(problem, Eigen::VectorXd::Constant(1, -2.0));
+  EXPECT_NE(result.status, SolveStatus::kConverged);
+  EXPECT_NE(result.message.find("term cliff: beyond the cliff, at ("), std::string::npos)
+      << ToString(result.status) << ": " << result.message;
+}
+
 TEST_P(ClaimsOfEveryBackend, ARedundantRowIsNotInfeasible) {
   const ReferenceProblem p = SmallProblem("thrice", {0.0, 0.0}, 2.0, EqualityForm::kRows)
                                  .Squares(2,

@@ -70,7 +70,9 @@ class Evaluator {
 
   int evaluations() const { return evaluations_; }
   int iterations() const { return iterations_; }
-  bool evaluation_failed() const { return failed_; }
+  /// How many evaluations could not be done, and where the last was tried.
+  int failures() const { return failures_; }
+  const Eigen::VectorXd& last_failure() const { return failed_; }
   double elapsed_s() const;
 
   bool has_best() const { return has_best_; }
@@ -104,7 +106,8 @@ class Evaluator {
   Want cached_want_;
   int evaluations_ = 0;
   int iterations_ = 0;
-  bool failed_ = false;
+  int failures_ = 0;
+  Eigen::VectorXd failed_;
   SolveStatus stop_status_ = SolveStatus::kConverged;
   bool has_best_ = false;
   Eigen::VectorXd best_;

@@ -84,6 +84,7 @@ class SolverBackend {
   virtual void DoSolve(const View& view, const WarmStart& warm, const Stop& stop,
                        Evaluator* evaluator, SolverResult* result) = 0;
 
+  void TellFailures(const View& view, SolverResult* result);
   void Judge(const View& view, const Eigen::VectorXd& start, SolverResult* result);
   bool FellWithoutEnd(const View& view, const Eigen::VectorXd& start);
 
