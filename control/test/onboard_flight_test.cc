@@ -302,7 +302,7 @@ TEST(OnboardFlights, StepsOfWrongTimesChangeNoBit) {
 
 // Nobody knows for how long a process stalled whose clock is another one. The autopilot brakes while the pad drives on.
 TEST(OnboardFlights, LandThoughTheProcessStallsForLongAboveTheDeck) {
-  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 2; ++seed) {
     const double contact = Fly(seed, {}).meets_at;
     for (const double seconds : {11.0, 30.0}) {
       for (const double before : {2.0, 1.0, 0.5, 0.2}) {
@@ -322,10 +322,10 @@ TEST(OnboardFlights, LandThoughTheProcessStallsForLongAboveTheDeck) {
 
 // A reference that leaps leads to the deck at once. Where the clock is wrong, so is the pad's prediction.
 TEST(OnboardFlights, LandSoftlyThoughTheClockLeapsAboveTheDeck) {
-  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 2; ++seed) {
     const double contact = Fly(seed, {}).meets_at;
-    for (const double leap : {0.15, 0.3, 0.5, 1.0, 2.0, 9.0, -0.3}) {
-      for (double before = 2.0; before > -0.5; before -= 0.25) {
+    for (const double leap : {0.15, 0.5, 2.0, -0.3}) {
+      for (double before = 1.5; before > -0.5; before -= 0.5) {
         Mess mess;
         mess.leap = leap;
         mess.leap_at = contact - before;
