@@ -15,6 +15,9 @@
 #include <mutex>
 #include <stdexcept>
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include "sim/mujoco/mjcf_source.h"
 #include "sim/mujoco/mujoco_call.h"
 
@@ -84,10 +87,30 @@ MujocoModel CompileVehicleMjcf(const std::string& mjcf) {
   return CompileMjcf(mjcf);
 }
 
+/// MuJoCo's qhull writes pages to stderr where a mesh is flat. What it reports, MuJoCo returns as well.
+class QuietErrors {
+ public:
+  QuietErrors() : before_(dup(STDERR_FILENO)), nowhere_(open("/dev/null", O_WRONLY | O_CLOEXEC)) {
+    if (before_ >= 0 && nowhere_ >= 0) dup2(nowhere_, STDERR_FILENO);
+  }
+  ~QuietErrors() {
+    if (before_ >= 0) dup2(before_, STDERR_FILENO);
+    for (const int file : {before_, nowhere_}) {
+      if (file >= 0) close(file);
+    }
+  }
+  QuietErrors(const QuietErrors&) = delete;
+  QuietErrors& operator=(const QuietErrors&) = delete;
+
+ private:
+  int before_, nowhere_;
+};
+
 // Its text counts as a file of that folder, in which MuJoCo looks for meshes.
 MujocoModel CompileMjcfFile(const std::string& path) {
   const Vfs vfs = MakeVfs();
   AddText(kSceneName, ReadMjcf(path), vfs.get());
+  const QuietErrors quiet;
   return Load((std::filesystem::path(path).parent_path() / kSceneName).c_str(), vfs.get());
 }
 

@@ -60,6 +60,16 @@ TEST_F(MjcfSource, IncludesComeInPlaceAndPicturesAreLeftOut) {
   EXPECT_NE(CompileMjcfFile(path), nullptr);
 }
 
+TEST_F(MjcfSource, AFlatMeshIsOneSentence) {
+  const std::string path = Write(
+      "flat.xml",
+      "<mujoco><asset><mesh name='flat' vertex='0 0 0  1 0 0  0 1 0  1 1 0'/></asset>"
+      "<worldbody><body><freejoint/><geom type='mesh' mesh='flat'/></body></worldbody></mujoco>");
+  ::testing::internal::CaptureStderr();
+  EXPECT_THAT(MessageOf<std::invalid_argument>([&] { CompileMjcfFile(path); }), HasSubstr("flat"));
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
+}
+
 TEST_F(MjcfSource, FilesWithoutAnEndAreNotOpened) {
   EXPECT_THAT(Refusal("<mujoco><include file='/dev/zero'/></mujoco>"), HasSubstr("/dev/zero"));
   EXPECT_THAT(Refusal("<mujoco><asset><mesh file='/dev/zero'/></asset></mujoco>"),
