@@ -11,6 +11,7 @@
 #include <cmath>
 #include <limits>
 
+#include "planning/spline/fastest_leg.h"
 #include "touchdown/planning/map/cell_box.h"
 #include "touchdown/planning/map/pad_outline.h"
 
@@ -104,16 +105,6 @@ class Stretch {
   Eigen::Vector3d axis_ = Eigen::Vector3d::Zero();  // zero: the way has not left the ball
   double away2_ = 0.0, off2_ = 0.0;                 // largest, of the places since the ball
 };
-
-/// Largest speed that the curve may have anywhere, and past its end [m/s].
-double FastestLeg(const UniformBspline& curve) {
-  const Eigen::Map<const ControlPoints> q = curve.control_points();
-  double longest2 = 0.0;
-  for (int i = 0; i + 1 < q.cols(); ++i) {
-    longest2 = std::max(longest2, (q.col(i + 1) - q.col(i)).squaredNorm());
-  }
-  return std::sqrt(longest2) / curve.interval();
-}
 
 /// Distance of a coordinate from the cell i.
 double Gap(double x, int i, double resolution) {

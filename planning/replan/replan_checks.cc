@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "planning/spline/fastest_leg.h"
+
 namespace touchdown::planning {
 
 namespace {
@@ -83,12 +85,7 @@ const char* WrongInTarget(const ReplanInput& input, double horizon) {
   return nullptr;
 }
 
-bool IsWalkable(const UniformBspline& curve) {
-  const auto points = curve.control_points();
-  const Eigen::Index steps = points.cols() - 1;
-  const double longest = (points.rightCols(steps) - points.leftCols(steps)).cwiseAbs().maxCoeff();
-  return longest < kFastest * curve.interval();
-}
+bool IsWalkable(const UniformBspline& curve) { return FastestLeg(curve) < kFastest; }
 
 void Validate(const ReplannerOptions& o) {
   for (const StepConstant& constant : StepConstantTable()) {

@@ -87,6 +87,8 @@ MujocoModel CompileVehicleMjcf(const std::string& mjcf) {
   return CompileMjcf(mjcf);
 }
 
+namespace {
+
 /// MuJoCo's qhull writes pages to stderr where a mesh is flat. What it reports, MuJoCo returns as well.
 class QuietErrors {
  public:
@@ -105,6 +107,8 @@ class QuietErrors {
  private:
   int before_, nowhere_;
 };
+
+}  // namespace
 
 // Its text counts as a file of that folder, in which MuJoCo looks for meshes.
 MujocoModel CompileMjcfFile(const std::string& path) {

@@ -372,6 +372,16 @@ TEST(Optimality, AMultiplierThatIsRoundingIsNone) {
 
 using Foot = OptimalityCheck::Foot;
 
+Foot FootFrom(const ReferenceProblem& p, const Eigen::VectorXd& start,
+              const OptimalityCheck::MustStop& must_stop = {}) {
+  const View view(*p.problem);
+  OptimalityCheck check;
+  check.Prepare(view);
+  ViewEvaluation storage;
+  view.Resize(&storage);
+  return check.StepOntoRows(view, start, must_stop, &storage);
+}
+
 TEST(Optimality, RowsAreInfeasibleWhereNoStepsLeadToAPointThatMeetsThem) {
   for (const double other : {3.0, 4.0}) {
     const ReferenceProblem p = SmallProblem("twice", {0.0, 0.0}, 0.0, EqualityForm::kRows)
@@ -380,13 +390,8 @@ TEST(Optimality, RowsAreInfeasibleWhereNoStepsLeadToAPointThatMeetsThem) {
                                      u[0] = x[0] + x[1] - 3.0;
                                      u[1] = 2.0 * (x[0] + x[1] - other);
                                    });
-    const View view(*p.problem);
-    OptimalityCheck check;
-    check.Prepare(view);
-    ViewEvaluation storage;
-    view.Resize(&storage);
     for (const double x : {1.6, 2.5, 1e3}) {
-      const Foot foot = check.StepOntoRows(view, Eigen::Vector2d(x, x), {}, &storage);
+      const Foot foot = FootFrom(p, Eigen::Vector2d(x, x));
       EXPECT_EQ(foot, other == 3.0 ? Foot::kMeets : Foot::kLeast) << other << " from " << x;
     }
   }
@@ -400,16 +405,9 @@ TEST(Optimality, RowsAreNotInfeasibleWhereNothingIsSeenOfThem) {
                                    using std::sqrt;
                                    u[0] = sqrt(-x[0] * x[0]) - 1.0;
                                  });
-  const View view(*p.problem);
-  OptimalityCheck check;
-  check.Prepare(view);
-  ViewEvaluation storage;
-  view.Resize(&storage);
   const Eigen::VectorXd start = Eigen::VectorXd::Zero(1);
-  EXPECT_EQ(check.StepOntoRows(view, start, {}, &storage), Foot::kUnknown);
-  EXPECT_EQ(check.StepOntoRows(
-                view, start, [] { return true; }, &storage),
-            Foot::kUnknown);
+  EXPECT_EQ(FootFrom(p, start), Foot::kUnknown);
+  EXPECT_EQ(FootFrom(p, start, [] { return true; }), Foot::kUnknown);
 }
 
 TEST(Optimality, InACornerTheRowsMayBeMetWithinTheBounds) {
@@ -418,12 +416,7 @@ TEST(Optimality, InACornerTheRowsMayBeMetWithinTheBounds) {
                                  .Squares(1, [](const auto* x, auto* u) { u[0] = x[0]; })
                                  .Zero(1, [](const auto* x, auto* u) { u[0] = x[0] - x[1] - 1.0; })
                                  .BoundAll(0.0, SmallProblem::kInfinity);
-  const View view(*p.problem);
-  OptimalityCheck check;
-  check.Prepare(view);
-  ViewEvaluation storage;
-  view.Resize(&storage);
-  EXPECT_EQ(check.StepOntoRows(view, Eigen::VectorXd::Zero(2), {}, &storage), Foot::kMeets);
+  EXPECT_EQ(FootFrom(p, Eigen::VectorXd::Zero(2)), Foot::kMeets);
 }
 
 TEST(Optimality, EndsWhereItIsToldTo) {
