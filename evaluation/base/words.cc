@@ -31,15 +31,19 @@ std::string WithoutStop(std::string sentence) {
 
 std::string InOneLine(std::string_view text) {
   std::string line;
+  int before = 0;
   for (const char letter : text) {
     const int code = static_cast<unsigned char>(letter);
+    const bool high = before == 0xc2 && code >= 0x80 && code < 0xa0;  // U+0080 to U+009F, in UTF-8
+    if (high) line.pop_back();
     if (letter == '\n') {
       line += "\\n";
-    } else if (code < 0x20 || code == 0x7f) {
+    } else if (code < 0x20 || code == 0x7f || high) {
       line += fmt::format("\\x{:02x}", code);
     } else {
       line += letter;
     }
+    before = code;
   }
   return line;
 }

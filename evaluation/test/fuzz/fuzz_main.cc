@@ -25,7 +25,7 @@ const fuzz::Target* Find(const char* name) {
   }
   std::fprintf(stderr, "--target=NAME, where NAME is one of:\n");
   for (const fuzz::Target& target : targets) std::printf("%s\n", target.name);
-  std::exit(2);
+  std::exit(*name == '\0' ? 0 : 2);  // without a name this is the list
 }
 
 }  // namespace
