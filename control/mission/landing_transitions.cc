@@ -70,6 +70,7 @@ Transition FromLanding(const MissionState& s, const MissionInputs& in, const Con
   if (LastedLonger(s.pad_missing_since, s.t, p.pad_timeout)) {
     return {MissionMode::kGoAround, TransitionReason::kPadLost};
   }
+  if (in.looks) return {MissionMode::kTracking, TransitionReason::kLooks};
   if (Planned(in)) return FromArriving(s, in, now, touches, p);
   if (LastedLonger(s.gate_closed_since, s.t, p.gate_timeout)) {
     return {MissionMode::kGoAround, TransitionReason::kTagsLost};
@@ -92,6 +93,7 @@ Transition FromTracking(const MissionState& s, const MissionInputs& in, const Co
   if (in.plan_failed_for > p.plan_timeout) {
     return {MissionMode::kHold, TransitionReason::kPlanFailed};
   }
+  if (in.looks) return {s.mode, TransitionReason::kNone};
   if (now.pad_good && in.descent == DescentStyle::kVertical &&
       in.horizontal_distance < p.landing_distance && in.horizontal_speed < p.landing_speed) {
     return {MissionMode::kLanding, TransitionReason::kAbovePad};

@@ -123,6 +123,7 @@ void Pilot::StepMission(const OwnState& own, const estimation::PadFilter& filter
   inputs.lean = LeanUnder(model_.HoverThrust(), disturbance().force_W);
   inputs.tag_age = to_goal() ? 0.0 : filter.TagAge(t);
   inputs.pad_sigma = to_goal() ? 0.0 : filter.PositionSigma(t);
+  inputs.looks = looks_from_.has_value();
   inputs.descent = options_.descent;
   inputs.arrival_in = plan_end_t_ + level_time_ - t;
   const double contact_in = ContactIn(mission_state_, inputs, parameters_);
@@ -176,6 +177,7 @@ void Pilot::Resume(const estimation::VehicleState& vehicle, const Eigen::Vector3
 
 const planning::ReplanResult* Pilot::Replan(const estimation::VehicleState& vehicle,
                                             const estimation::PadFilter& filter,
+                                            const std::vector<planning::LookCamera>& cameras,
                                             const planning::OccupancyMap& map) {
   idle_ = false;
   if (mission_.mode == MissionMode::kHovering || !mission_.motors_armed) {
@@ -201,7 +203,7 @@ const planning::ReplanResult* Pilot::Replan(const estimation::VehicleState& vehi
   // No plan is missing while none is tried: a climb must not end as a failure to plan.
   if (!wants_plan && requested_t_) requested_t_ = vehicle.t;
   const auto begin = std::chrono::steady_clock::now();
-  const planning::ReplanResult& result = Ask(wants_plan, filter, map);
+  const planning::ReplanResult& result = Ask(wants_plan, filter, cameras, map);
   idle_ = result.idle;
   if (idle_) return nullptr;
   look_W_ = result.unseen_W;
@@ -213,14 +215,15 @@ const planning::ReplanResult* Pilot::Replan(const estimation::VehicleState& vehi
   // Where there is nothing left to plan, or what is flown lands, no plan is missing.
   const bool kept = result.status == planning::ReplanStatus::kKept;
   lands_ = parts_.planner_lands && result.Lands();
-  const bool lands_as_wanted = wants_plan && input.endpoint.leads_to_contact() && kept && lands_ &&
+  const bool to_contact = wants_plan && !looks_from_ && input.endpoint.leads_to_contact();
+  const bool lands_as_wanted = to_contact && kept && lands_ &&
                                result.reason != planning::ReplanReason::kInvalidInput;
   at_goal_ = result.reason == planning::ReplanReason::kAtGoal;
   last_planned_ = result.status == planning::ReplanStatus::kPlanned || at_goal_ || lands_as_wanted;
   has_plan_ = last_planned_ || kept;
   if (last_planned_) planned_t_ = vehicle.t;
   if (!kept && !Levelled(vehicle.t)) {
-    const bool touches = last_planned_ && wants_plan && input.endpoint.touches();
+    const bool touches = last_planned_ && to_contact && input.endpoint.touches();
     plan_end_t_ = touches ? result.curve.t_end() : std::numeric_limits<double>::infinity();
   }
   return &result;
@@ -281,6 +284,7 @@ double Pilot::RestClimb() const {
 
 // A vehicle that comes to rest may start above the deck, so its request holds the pad, too.
 const planning::ReplanResult& Pilot::Ask(bool for_plan, const estimation::PadFilter& filter,
+                                         const std::vector<planning::LookCamera>& cameras,
                                          const planning::OccupancyMap& map) {
   ReplanRequest& request = replan_.request;
   request.rest_climb.reset();
@@ -289,6 +293,12 @@ const planning::ReplanResult& Pilot::Ask(bool for_plan, const estimation::PadFil
   planning::ReplanInput& input = request.input;
   if (request.pad) input.pad = &parts_.predictor->Predict(*request.pad);
   if (input.pad != nullptr) replan_.pad = input.pad->At(input.t_now);
+  looks_from_.reset();
+  input.look_from_W.reset();
+  if (parts_.scout && input.pad != nullptr) {
+    looks_from_ = parts_.scout->Step(input, cameras, map, for_plan && !arriving());
+    if (looks_from_) input.look_from_W = looks_from_->p_WB;
+  }
   const planning::ReplanResult& result =
       for_plan ? parts_.planner->Replan(input, map)
                : parts_.planner->Rest(input, *request.rest_climb, map);
@@ -415,6 +425,7 @@ bool Pilot::plan_valid(double t) const {
 
 double Pilot::HeadingAhead(const estimation::VehicleState& vehicle,
                            const estimation::PadFilter& filter) const {
+  if (looks_from_) return looks_from_->yaw;
   // The path, not the reference: the reference of a pair soon turns into its stop.
   const Eigen::Vector3d ahead = WayAt(vehicle.t + kLookAhead) - WayAt(vehicle.t);
   if (ahead.head<2>().norm() > kLookDistance) {

@@ -18,6 +18,7 @@
 #include "touchdown/control/tracking/controller.h"
 #include "touchdown/estimation/base/vehicle_model.h"
 #include "touchdown/estimation/pad/pad_filter.h"
+#include "touchdown/planning/look/scout.h"
 #include "touchdown/planning/replan/planner.h"
 
 namespace touchdown::control {
@@ -60,6 +61,7 @@ class Pilot {
   /// close_rate where it `plans_often`. The planner owns the result until the next.
   const planning::ReplanResult* Replan(const estimation::VehicleState& vehicle,
                                        const estimation::PadFilter& filter,
+                                       const std::vector<planning::LookCamera>& cameras,
                                        const planning::OccupancyMap& map);
 
   /// What is commanded in this control step. Once per step: the disturbance is estimated from it.
@@ -110,6 +112,7 @@ class Pilot {
   bool WantsPlan(const estimation::PadFilter& filter, double t) const;
   double RestClimb() const;
   const planning::ReplanResult& Ask(bool for_plan, const estimation::PadFilter& filter,
+                                    const std::vector<planning::LookCamera>& cameras,
                                     const planning::OccupancyMap& map);
 
   const OnboardOptions& options_;
@@ -130,6 +133,7 @@ class Pilot {
   bool blown_off_ = false;                 ///< ... and the vehicle far off a way that does not land
   double heading_ahead_ = 0.0;             ///< of the way that is flown [rad]
   std::optional<Eigen::Vector3d> look_W_;  ///< what the next stops need to have seen
+  std::optional<planning::Viewpoint> looks_from_;  ///< it flies there to look
   double heading_ = 0.0;                   ///< that is steered for [rad]
   bool leans_ = false;                     ///< the heading is chosen by the wind
   OnboardReplan replan_;

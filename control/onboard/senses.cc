@@ -17,6 +17,7 @@
 namespace touchdown::control {
 namespace {
 
+constexpr std::size_t kMostCameras = 8;  // depth cameras
 constexpr double kTagsGuide = 0.5;      // GPS is left out while tags are younger than this [s]
 constexpr double kMaxClockLead = 0.05;  // of the newest own state: no measurement is [s]
 // If only the hull's space is marked free at the start, no stop lies in free cells. A vehicle whose
@@ -126,8 +127,23 @@ Taken Senses::Take(const estimation::DepthImage& image, double stamp) {
     map_.ExplainDoubts([&](double at) { return Outline(t, at); });
   }
   images_.Add(stamp);
+  NoteCamera(image);
   depth_t_ = std::max(depth_t_, stamp);
   return Taken::kUsed;
+}
+
+void Senses::NoteCamera(const estimation::DepthImage& image) {
+  const auto same = [&](const planning::LookCamera& camera) {
+    return camera.p_BC == image.p_BC && camera.R_BC == image.R_BC;
+  };
+  auto known = std::find_if(cameras_.begin(), cameras_.end(), same);
+  if (known == cameras_.end()) {
+    if (cameras_.size() == kMostCameras) cameras_.erase(cameras_.begin());
+    known = cameras_.insert(cameras_.end(), {image.intrinsics, image.p_BC, image.R_BC, 0.0, 0});
+  }
+  known->intrinsics = image.intrinsics;
+  known->reach = std::min(image.max_range, map_.options().thinnest_obstacle * image.intrinsics.focal);
+  ++known->images;
 }
 
 // Where the pad was at `stamp`, with its uncertainty of then and of today.

@@ -13,6 +13,7 @@
 #include "touchdown/estimation/base/measurements.h"
 #include "touchdown/estimation/pad/pad_arrival.h"
 #include "touchdown/estimation/pad/pad_filter.h"
+#include "touchdown/planning/look/scout.h"
 #include "touchdown/planning/map/occupancy_map.h"
 #include "touchdown/planning/map/persistent_map.h"
 
@@ -48,6 +49,9 @@ class Senses {
   /// Since the stamp of the last depth image, or since Begin if none has come [s].
   double DepthAge(double t) const { return std::max(0.0, t - depth_t_); }
 
+  /// The depth cameras whose images were used.
+  const std::vector<planning::LookCamera>& cameras() const { return cameras_; }
+
   const OwnState& own() const { return own_; }
   const estimation::PadFilter& pad() const { return pad_; }
   const planning::OccupancyMap& map() const { return map_; }
@@ -60,6 +64,7 @@ class Senses {
   std::optional<Taken> Refused(double t, const Stamps& used) const;
   bool TagsGuide(double t) const;
   planning::PadOutline Outline(double t, double stamp) const;
+  void NoteCamera(const estimation::DepthImage& image);
 
   OwnState own_;
   estimation::PadFilter pad_;
@@ -70,6 +75,7 @@ class Senses {
   bool doubts_ = false;
   bool pad_is_obstacle_;  // the goal is another than the pad
   Stamps fixes_, sightings_, pad_images_, images_;
+  std::vector<planning::LookCamera> cameras_;
   double depth_t_ = 0.0;  // of the last depth image, or of Begin [s]
   PadSearch look_;
   estimation::DepthFrame frame_;

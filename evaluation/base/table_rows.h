@@ -57,6 +57,11 @@ class TableRows {
     const double value = statement_.Real(column_++);
     return missing ? std::nullopt : std::optional<double>(value);
   }
+  std::optional<Eigen::Vector3d> OptionalVector3() {
+    const std::optional<double> x = Optional(), y = Optional(), z = Optional();
+    if (!(x && y && z)) return std::nullopt;
+    return Eigen::Vector3d(*x, *y, *z);
+  }
   int Integer(std::int64_t low, std::int64_t high) {
     if (statement_.IsNull(column_)) Refuse("lacks a number");
     const std::int64_t value = statement_.Integer(column_++);

@@ -45,6 +45,7 @@ CREATE TABLE map_window(plan INTEGER PRIMARY KEY, ix INTEGER, iy INTEGER, iz INT
 CREATE TABLE map_change(plan INTEGER, ix INTEGER, iy INTEGER, iz INTEGER, count INTEGER,
   state TEXT);
 CREATE TABLE replan_input(plan INTEGER PRIMARY KEY, t_now REAL, t_start REAL, rest_climb REAL,
+  look_x REAL, look_y REAL, look_z REAL,
   px REAL, py REAL, pz REAL, vx REAL, vy REAL, vz REAL,
   qw REAL, qx REAL, qy REAL, qz REAL, wx REAL, wy REAL, wz REAL,
   pad_px REAL, pad_py REAL, pad_pz REAL, pad_vx REAL, pad_vy REAL, pad_vz REAL,
@@ -61,8 +62,7 @@ CREATE TABLE belief(plan INTEGER, i INTEGER, mean REAL, cov0 REAL, cov1 REAL, co
 CREATE TABLE bound_part(plan INTEGER, i INTEGER, t_from REAL, t_to REAL);
 CREATE TABLE unfinished(plan INTEGER PRIMARY KEY, attempt INTEGER, duration REAL, arrival_free INTEGER,
   unseen_reach REAL);
-CREATE TABLE replanner_state(plan INTEGER PRIMARY KEY, planned INTEGER, around_unseen INTEGER, looked_t REAL, asked_t REAL, look_x REAL,
-  look_y REAL, look_z REAL, climb REAL, strip_t REAL,
+CREATE TABLE replanner_state(plan INTEGER PRIMARY KEY, planned INTEGER, around_unseen INTEGER, looked_t REAL, asked_t REAL, climb REAL, strip_t REAL,
   strip_from_x REAL, strip_from_y REAL, strip_to_x REAL, strip_to_y REAL, strip_floor REAL,
   current_t0 REAL, current_h REAL, current_stop_t0 REAL, current_stop_h REAL, next_t0 REAL,
   next_h REAL, next_stop_t0 REAL, next_stop_h REAL, current_t_stop REAL,
@@ -164,7 +164,11 @@ void WriteInput(SqliteStatement& insert, int id, const RecordPlan& row) {
   const estimation::VehicleState& v = input.vehicle;
   const estimation::PadState& pad = row.pad;
   const planning::EndpointTarget& end = input.endpoint;
-  insert.Run(id, input.t_now, input.t_start, row.request.rest_climb, v.p_WB.x(), v.p_WB.y(),
+  const auto look = [&input](int axis) -> std::optional<double> {
+    return input.look_from_W ? std::optional<double>((*input.look_from_W)[axis]) : std::nullopt;
+  };
+  insert.Run(id, input.t_now, input.t_start, row.request.rest_climb, look(0), look(1), look(2),
+             v.p_WB.x(), v.p_WB.y(),
              v.p_WB.z(), v.v_WB.x(), v.v_WB.y(), v.v_WB.z(), v.q_WB.w(), v.q_WB.x(), v.q_WB.y(),
              v.q_WB.z(), v.w_WB_B.x(), v.w_WB_B.y(), v.w_WB_B.z(), pad.p_WP.x(), pad.p_WP.y(),
              pad.p_WP.z(), pad.v_WP.x(), pad.v_WP.y(), pad.v_WP.z(), pad.a_WP.x(), pad.a_WP.y(),
@@ -189,13 +193,13 @@ void WriteRequests(SqliteDb& db, const std::vector<RecordPlan>& plans) {
   SqliteStatement input = db.Prepare(
       "INSERT INTO replan_input VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
       "?, "
-      "?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+      "?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   SqliteStatement prediction =
       db.Prepare("INSERT INTO prediction VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   SqliteStatement belief = db.Prepare("INSERT INTO belief VALUES(?, ?, ?, ?, ?, ?, ?, ?)");
   SqliteStatement state = db.Prepare(
       "INSERT INTO replanner_state VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
-      "?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+      "?, ?, ?, ?, ?, ?, ?, ?)");
   SqliteStatement bound = db.Prepare("INSERT INTO bound_part VALUES(?, ?, ?, ?)");
   SqliteStatement unfinished = db.Prepare("INSERT INTO unfinished VALUES(?, ?, ?, ?, ?)");
   SqliteStatement point = db.Prepare("INSERT INTO state_point VALUES(?, ?, ?, ?, ?, ?)");
@@ -212,9 +216,6 @@ void WriteRequests(SqliteDb& db, const std::vector<RecordPlan>& plans) {
       belief.Run(id, i, p.belief.mean(i), c(i, 0), c(i, 1), c(i, 2), c(i, 3), c(i, 4));
     }
     const planning::ReplannerState& s = row.before;
-    const auto look = [&s](int axis) -> std::optional<double> {
-      return s.looks_at_W ? std::optional<double>((*s.looks_at_W)[axis]) : std::nullopt;
-    };
     for (std::size_t i = 0; i < s.bound.size(); ++i) {
       bound.Run(id, static_cast<int>(i), s.bound[i].from, s.bound[i].to);
     }
@@ -223,7 +224,7 @@ void WriteRequests(SqliteDb& db, const std::vector<RecordPlan>& plans) {
                      s.unfinished->arrival == planning::ArrivalMode::kFree,
                      s.unfinished->unseen_reach);
     }
-    state.Run(id, s.planned, s.around_unseen, s.looked_t, s.asked_t, look(0), look(1), look(2),
+    state.Run(id, s.planned, s.around_unseen, s.looked_t, s.asked_t,
               s.climb, s.strip_t, s.strip_from.x(), s.strip_from.y(), s.strip_to.x(),
               s.strip_to.y(), s.strip_floor, s.current.curve.t0(), s.current.curve.interval(),
               s.current.stop.t0(), s.current.stop.interval(), s.next.curve.t0(),

@@ -10,7 +10,7 @@
 namespace touchdown::evaluation {
 
 /// Version of the file format that docs/record.md describes.
-inline constexpr int kRecordVersion = 19;
+inline constexpr int kRecordVersion = 20;
 
 /// Writes one landing to an SQLite file (docs/record.md). The file appears whole or not at all. It
 /// is written beside its place and moved there, and replaces an older one.

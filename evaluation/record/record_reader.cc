@@ -152,6 +152,7 @@ void ReadRequests(SqliteDb& db, std::vector<RecordPlan>* plans) {
     before = input.t_now;
     input.t_start = row.Number();
     plan->request.rest_climb = row.Optional();
+    input.look_from_W = row.OptionalVector3();
     estimation::VehicleState& vehicle = input.vehicle;
     vehicle.t = input.t_now;
     vehicle.p_WB = row.Vector3();
@@ -178,7 +179,7 @@ void ReadRequests(SqliteDb& db, std::vector<RecordPlan>* plans) {
   };
   ReadEach(
       TableRows(db, "replan_input",
-                "plan, t_now, t_start, rest_climb, px, py, pz, vx, vy, vz, qw, qx, qy, qz, wx, wy, "
+                "plan, t_now, t_start, rest_climb, look_x, look_y, look_z, px, py, pz, vx, vy, vz, qw, qx, qy, qz, wx, wy, "
                 "wz, pad_px, pad_py, pad_pz, pad_vx, pad_vy, pad_vz, pad_ax, pad_ay, pad_az, "
                 "pad_yaw, pad_yaw_rate, endpoint_t_reference, endpoint_height, "
                 "endpoint_sink_rate, endpoint_height_floor, endpoint_arrival_sink, "
@@ -217,7 +218,7 @@ void ReadStates(SqliteDb& db, std::vector<RecordPlan>* plans) {
   std::vector<std::map<std::string, Knots>> knots(plans->size());
   ReadEach(
       TableRows(db, "replanner_state",
-                "plan, planned, around_unseen, looked_t, asked_t, look_x, look_y, look_z, climb, "
+                "plan, planned, around_unseen, looked_t, asked_t, climb, "
                 "strip_t, strip_from_x, "
                 "strip_from_y, strip_to_x, strip_to_y, strip_floor, current_t0, current_h, "
                 "current_stop_t0, "
@@ -231,8 +232,6 @@ void ReadStates(SqliteDb& db, std::vector<RecordPlan>* plans) {
         s.around_unseen = row.Flag();
         s.looked_t = row.Number();
         s.asked_t = row.Optional();
-        const std::optional<double> x = row.Optional(), y = row.Optional(), z = row.Optional();
-        if (x && y && z) s.looks_at_W = Eigen::Vector3d(*x, *y, *z);
         s.climb = row.Optional();
         s.strip_t = row.Optional();
         s.strip_from = row.Vector2();

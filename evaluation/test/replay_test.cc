@@ -148,7 +148,7 @@ TEST_F(Replayed, ABadRecordIsRefusedInASentence) {
     EXPECT_THAT(refusal, ::testing::HasSubstr(words)) << sql;
     std::filesystem::rename(kept, path_);
   };
-  damaged("UPDATE meta SET value = '1' WHERE key = 'version'", "version 1, this build reads 19");
+  damaged("UPDATE meta SET value = '1' WHERE key = 'version'", "version 1, this build reads 20");
   damaged("UPDATE meta SET value = 'touchdown trials' WHERE key = 'format'", "no record");
   damaged("DELETE FROM meta WHERE key = 'scenario_yaml'", "lacks scenario_yaml");
   damaged("UPDATE meta SET value = '0.2' WHERE key = 'map_resolution'", "cells of 0.2 m");

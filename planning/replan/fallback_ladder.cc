@@ -1,18 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "planning/replan/fallback_ladder.h"
 
-#include <limits>
-
-#include "planning/certify/vantage.h"
-
 namespace touchdown::planning {
 
 namespace {
 
 const Eigen::Vector3d kClimbAfterMiss(0.0, 0.0, 0.5);  // of a landing whose deck is gone [m]
 const Eigen::Vector3d kNoShift(0.0, 0.0, 0.0);
-constexpr double kLookTime = 2.0;      // at rest, before a vehicle looks from elsewhere [s] ...
-constexpr double kVantageRange = 1.5;  // ... at a cell no farther than this [m]
 
 }  // namespace
 
@@ -43,8 +37,11 @@ Fallen FallbackLadder::StepDown(const FallbackFacts& facts, ReplanResult* result
     result->status = ReplanStatus::kEscaping;
     return {.commits = true};
   }
-  if (at_rest && result->reason == ReplanReason::kUnobserved && StepsAside(facts, result)) {
-    return {.commits = true};
+  if (at_rest && facts.look_from_W) {
+    for (const double share : {1.0, 0.5, 0.25}) {
+      const Eigen::Vector3d shift = share * (*facts.look_from_W - facts.start.p);
+      if (Stops(facts, shift, Fallback::Room::kPlanClearance, result)) return {.commits = true};
+    }
   }
   // A landing has no stop of its own, and that of a reference that was lost is elsewhere.
   if (result->from_odometry || committed.Lands()) {
@@ -66,15 +63,14 @@ Fallen FallbackLadder::StepDown(const FallbackFacts& facts, ReplanResult* result
 }
 
 Fallen FallbackLadder::Rest(const FallbackFacts& facts, double climb, ReplanResult* result) {
-  memory_.looks_at_W.reset();
-  const bool under_way = memory_.climb == climb && !result->from_odometry;
+  const bool under_way = climb_ == climb && !result->from_odometry;
   if (!under_way) {
-    memory_.climb.reset();
+    climb_.reset();
     // Below a roof a part of the climb takes the vehicle out of the pad's way, too.
     for (const double rise : {climb, 0.5 * climb, 0.25 * climb, 0.0}) {
       if (!Stops(facts, {0.0, 0.0, rise}, Fallback::Room::kPlanClearance, result)) continue;
       // That none came out is no reason to stop trying.
-      if (rise > 0.0 || climb == 0.0) memory_.climb = climb;
+      if (rise > 0.0 || climb == 0.0) climb_ = climb;
       if (rise > 0.0) result->status = ReplanStatus::kClimbing;
       return {.commits = true};
     }
@@ -91,41 +87,12 @@ bool FallbackLadder::GoesOn(const FallbackFacts& facts, ReplanResult* result) {
                           result);
 }
 
-bool FallbackLadder::StillLooks(const OccupancyMap& map, bool from_odometry) {
-  if (!memory_.looks_at_W) return false;
-  const CellIndex cell = map.CellOf(*memory_.looks_at_W);
-  if (from_odometry || map.IsObservedFree(cell) || map.IsOccupied(cell)) memory_.looks_at_W.reset();
-  return memory_.looks_at_W.has_value();
-}
-
 /// A stop that ends `shift` from where braking does [m], if there is one.
 bool FallbackLadder::Stops(const FallbackFacts& facts, const Eigen::Vector3d& shift,
                            Fallback::Room room, ReplanResult* result) {
   if (!fallback_.Rests(facts.t0, facts.start, shift, *facts.hull, room, result)) return false;
   result->status = ReplanStatus::kBraking;
   return true;
-}
-
-/// A vehicle that has looked for long without seeing a cell that the path needs goes to where it sees the cell
-/// better. It does not go low, where the pad may pass, nor from where a landing goes on.
-bool FallbackLadder::StepsAside(const FallbackFacts& facts, ReplanResult* result) {
-  if (!result->unseen_W || facts.t0 - facts.committed->Last().t_end() < kLookTime) return false;
-  memory_.looks_at_W.reset();
-  const Eigen::Vector3d unseen = *result->unseen_W;
-  if ((facts.start.p - unseen).norm() > kVantageRange) return false;
-  const HullSpace& hull = *facts.hull;
-  double lowest = -std::numeric_limits<double>::infinity();
-  if (hull.pad != nullptr) {
-    lowest = LowestRest(facts.t0, hull);
-    if (facts.endpoint.leads_to_contact() && hull.space->OverPad(facts.start.p)) return false;
-  }
-  for (const Eigen::Vector3d& shift : Vantages(facts.start.p, unseen, facts.pull_W)) {
-    if (facts.start.p.z() + shift.z() < lowest) continue;
-    if (!Stops(facts, shift, Fallback::Room::kPlanClearance, result)) continue;
-    memory_.looks_at_W = unseen;
-    return true;
-  }
-  return false;
 }
 
 }  // namespace touchdown::planning

@@ -23,7 +23,7 @@ struct FallbackFacts {
   double reaction = 0.0;  ///< after which a newer stop begins [s]
   const HullSpace* hull = nullptr;
   EndpointTarget endpoint;
-  Eigen::Vector3d pull_W = Eigen::Vector3d::Zero();  ///< steady force over the mass [m/s^2]
+  std::optional<Eigen::Vector3d> look_from_W;  ///< the vehicle goes there to look [m]
 };
 
 /// The result of the ladder.
@@ -41,7 +41,7 @@ bool LandsSoon(const FlightPair& committed, double t0, const EndpointTarget& end
 /// 1. the committed landing;
 /// 2. the committed curve with a newer stop;
 /// 3. a way out, from rest;
-/// 4. a better place to look from;
+/// 4. a straight move to where the vehicle wants to look from, or towards it;
 /// 5. a rest;
 /// 6. after a landing that misses: up, proven or not; else the stored stop.
 ///
@@ -68,27 +68,17 @@ class FallbackLadder {
     return fallback_.NoTimeToBrake(start, space);
   }
 
-  /// A vehicle that went to where a cell is in sight makes no plan until the cell is known or no better place is
-  /// left.
-  bool StillLooks(const OccupancyMap& map, bool from_odometry);
-
-  /// What a committed rest is for.
-  struct Memory {
-    std::optional<Eigen::Vector3d> looks_at_W;  ///< it leads to where this is in sight
-    std::optional<double> climb;                ///< the caller asked for it, so much higher [m]
-  };
-  const Memory& memory() const { return memory_; }
-  void Restore(const Memory& memory) { memory_ = memory; }
-  void Forget() { memory_ = {}; }
-  void ForgetClimb() { memory_.climb.reset(); }
+  /// The caller asked for the committed rest, so much higher [m].
+  std::optional<double> climb() const { return climb_; }
+  void Restore(std::optional<double> climb) { climb_ = climb; }
+  void Forget() { climb_.reset(); }
 
  private:
   bool Stops(const FallbackFacts& facts, const Eigen::Vector3d& shift, Fallback::Room room,
              ReplanResult* result);
-  bool StepsAside(const FallbackFacts& facts, ReplanResult* result);
 
   Fallback fallback_;
-  Memory memory_;
+  std::optional<double> climb_;
 };
 
 }  // namespace touchdown::planning

@@ -76,6 +76,9 @@ const char* WrongInTarget(const ReplanInput& input, double horizon) {
     return "endpoint.arrival_sink is not finite, or below 0";
   }
   if (!end.passing_W.allFinite()) return "endpoint.passing_W is not finite";
+  if (input.look_from_W && !(input.look_from_W->allFinite() && Near(*input.look_from_W))) {
+    return "look_from_W is not finite, or a million metres away";
+  }
   if (const char* wrong = WrongInPad(input, horizon)) return wrong;
   for (const double t : {input.t_start, input.t_start + horizon}) {
     const SplineState state = EndStateAt(*input.pad, end, t).state;

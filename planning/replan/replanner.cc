@@ -21,6 +21,7 @@
 #include "planning/replan/replan_checks.h"
 #include "planning/search/timed_path.h"
 #include "touchdown/planning/replan/attempt_ladder.h"
+#include "touchdown/planning/replan/goal.h"
 #include "touchdown/planning/replan/stage_timer.h"
 #include "touchdown/planning/spline/rest_trajectory.h"
 
@@ -43,6 +44,13 @@ double DetourOf(const UniformBspline& curve, double from) {
 }
 
 SplineState ToSpline(const FlatState& flat) { return {flat.p_WB, flat.v_WB, flat.a_WB}; }
+
+/// The end of a plan to a place to look from.
+EndpointTarget AtRest() {
+  EndpointTarget end;
+  end.height = 0.0;
+  return end;
+}
 
 /// The deck below a known pad that has one; nullptr: none.
 const estimation::PadPrediction* DeckOf(const ReplanInput& input) {
@@ -121,6 +129,7 @@ class Replanner::Impl {
   FreeSpace SpaceOverPad(const ReplanInput& input, const SplineState& start, double t_end,
                          const OccupancyMap& map) const;
   void Begin(const ReplanInput& input);
+  void SetEnd(const ReplanInput& input);
   const char* WrongInState(const ReplanInput& input) const;
   const ReplanResult& RefuseState(const ReplanInput& input, const char* wrong);
   void NoteAsked(double t_start);
@@ -145,6 +154,9 @@ class Replanner::Impl {
   double reaction_ = 0.0;          // after which a stop of this step begins [s]
   std::optional<double> asked_t_;  // the last answer took over then [s]
   bool stands_ = false;            // something is committed
+  std::optional<GoalAt> look_from_;  // where a plan ends instead of at the pad
+  const estimation::PadPrediction* pad_ = nullptr;  // where a plan ends: this and ...
+  EndpointTarget end_;                              // ... this
   ReplanResult result_;
   UnseenZone unseen_;
   bool planned_before_ = false;  // the committed curve is a plan to the pad: its arrival is kept
@@ -197,8 +209,7 @@ ReplannerState Replanner::Impl::State() const {
   state.looked_t = looked_t_;
   state.asked_t = asked_t_;
   state.unfinished = unfinished_;
-  state.looks_at_W = fallback_.memory().looks_at_W;
-  state.climb = fallback_.memory().climb;
+  state.climb = fallback_.climb();
   if (std::isfinite(strip_t_)) state.strip_t = strip_t_;
   state.strip_from = strip_.pad_from;
   state.strip_to = strip_.pad_to;
@@ -217,7 +228,7 @@ void Replanner::Impl::Restore(const ReplannerState& state) {
   looked_t_ = state.looked_t;
   asked_t_ = state.asked_t;
   unfinished_ = state.unfinished;
-  fallback_.Restore({state.looks_at_W, state.climb});
+  fallback_.Restore(state.climb);
   strip_t_ = state.strip_t.value_or(kNeverTime);
   strip_.floor = options_.floor_height;
   strip_.ceiling = options_.ceiling_height;
@@ -239,7 +250,8 @@ void Replanner::Impl::Begin(const ReplanInput& input) {
   result_.pairs = result_.solves = result_.rebinds = result_.work = 0;
   result_.from_odometry = result_.map_error = result_.committed = false;
   result_.proven = true;
-  result_.ends_in_contact = DeckOf(input) && input.endpoint.may_touch(options_.contact_height);
+  result_.ends_in_contact = DeckOf(input) && !input.look_from_W &&
+                            input.endpoint.may_touch(options_.contact_height);
   result_.unseen_W.reset();
   result_.reason = ReplanReason::kNone;
   result_.detail = result_.forbidden_by = {};
@@ -248,6 +260,15 @@ void Replanner::Impl::Begin(const ReplanInput& input) {
   result_.solver.iterations = result_.solver.evaluations = 0;
   result_.solver.cost = 0.0;
   for (solvers::TermCost& term : result_.solver.cost_by_term) term.cost = 0.0;
+}
+
+void Replanner::Impl::SetEnd(const ReplanInput& input) {
+  pad_ = input.pad;
+  end_ = input.endpoint;
+  if (!input.look_from_W) return;
+  look_from_.emplace(*input.look_from_W);
+  pad_ = &*look_from_;
+  end_ = AtRest();
 }
 
 /// Without a usable state of the vehicle nothing can be decided: the committed pair goes on, to its stop.
@@ -305,15 +326,12 @@ const ReplanResult& Replanner::Impl::Replan(const ReplanInput& input, const Occu
   if (const char* wrong = WrongInState(input)) return RefuseState(input, wrong);
   NoteAsked(input.t_start);
   const SplineState start = Start(input);
-  fallback_.ForgetClimb();
+  fallback_.Forget();
   const char* wrong = WrongInTarget(input, options_.max_duration);
   const bool target_valid = wrong == nullptr;
   if (wrong) result_.detail = wrong;
-  const bool looks = target_valid && fallback_.StillLooks(map, result_.from_odometry);
-  if (looks) result_.unseen_W = fallback_.memory().looks_at_W;
-  result_.reason = !target_valid ? ReplanReason::kInvalidInput
-                   : looks       ? ReplanReason::kUnobserved
-                                 : Plan(input, start, map);
+  if (target_valid) SetEnd(input);
+  result_.reason = target_valid ? Plan(input, start, map) : ReplanReason::kInvalidInput;
   // Where cells are to be seen first, no term decides.
   if (result_.reason == ReplanReason::kUnobserved) result_.forbidden_by = {};
   const FreeSpace space = target_valid ? SpaceOverPad(input, start, WatchedUntil(input), map)
@@ -343,8 +361,8 @@ FallbackFacts Replanner::Impl::FactsFor(const ReplanInput& input, const SplineSt
   facts.t0 = input.t_start;
   facts.reaction = reaction_;
   facts.hull = &hull;
-  facts.endpoint = input.endpoint;
-  facts.pull_W = input.pull_W;
+  facts.endpoint = input.look_from_W ? AtRest() : input.endpoint;
+  facts.look_from_W = input.look_from_W;
   facts.planned = planned_before_;
   return facts;
 }
@@ -389,7 +407,7 @@ double Replanner::Impl::FirstFreeArrival(const ReplanInput& input, double T,
   const FreeSpace space = Space(map);
   const double latest = std::min(options_.constants.stretch * T, options_.max_duration);
   for (double later = T; later <= latest; later *= options_.constants.end_step) {
-    const SplineState end = EndStateAt(*input.pad, input.endpoint, input.t_start + later).state;
+    const SplineState end = EndStateAt(*pad_, end_, input.t_start + later).state;
     if (!space.Blocked(end.p)) return later;
   }
   return T;
@@ -401,11 +419,11 @@ Attempt Replanner::Impl::FirstAttempt(const ReplanInput& input, const SplineStat
                                       const FreeSpace& plain, AttemptFacts* facts) {
   StageTimer timer(&result_.times.predict, StageTimer::kWhileLogged);
   const auto guess = [&](double detour) {
-    return GuessDuration(start, input.t_start, *input.pad, input.endpoint, limits_, detour);
+    return GuessDuration(start, input.t_start, *pad_, end_, limits_, detour);
   };
   facts->fresh = guess(1.0);
   facts->lands_soon = !result_.from_odometry &&
-                      LandsSoon(next_, input.t_start, input.endpoint, HullIn(plain, DeckOf(input)));
+                      LandsSoon(next_, input.t_start, end_, HullIn(plain, DeckOf(input)));
   facts->at_rest = !result_.from_odometry && Fallback::AtRest(next_, input.t_start);
   facts->arrival = options_.arrival;
   facts->min_duration = options_.min_duration;
@@ -419,7 +437,7 @@ Attempt Replanner::Impl::FirstAttempt(const ReplanInput& input, const SplineStat
   // A vehicle that follows a pad needs no shorter plans than usual. Only the last ones before a
   // contact are shorter.
   const double shortest =
-      input.endpoint.touches() ? options_.min_contact_duration : options_.min_duration;
+      end_.touches() ? options_.min_contact_duration : options_.min_duration;
   Attempt attempt;
   attempt.duration = std::clamp(promised ? left : facts->fresh, shortest, options_.max_duration);
   // The prepared problems' free arrival has the usual lower bound.
@@ -487,8 +505,8 @@ AttemptRequest Replanner::Impl::RequestFor(const ReplanInput& input, const Splin
   request.start = start;
   request.t0 = input.t_start;
   request.reaction = reaction_;
-  request.pad = input.pad;
-  request.target = input.endpoint;
+  request.pad = pad_;
+  request.target = end_;
   request.limits = limits_;
   request.pull_W = input.pull_W;
   request.arrival = attempt.arrival;
@@ -511,7 +529,7 @@ AttemptRequest Replanner::Impl::RequestFor(const ReplanInput& input, const Splin
   // Shortly before contact nothing is kept: earlier pairs would push the vehicle there.
   const double left = next_.curve.t_end() - input.t_start;
   request.keeps = request.starts_on_previous &&
-                  !(input.endpoint.leads_to_contact() && left < constants.near_contact);
+                  !(end_.leads_to_contact() && left < constants.near_contact);
   request.looks = !request.keeps || input.t_start - looked_t_ >= constants.look_every;
   if (request.looks) looked_t_ = input.t_start;
   request.log = log_ ? &log_->attempts.emplace_back() : nullptr;

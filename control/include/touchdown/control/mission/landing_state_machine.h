@@ -109,6 +109,7 @@ enum class TransitionReason {
   kEmergencyCleared,
   kOwnStateLost,
   kDepthLost,
+  kLooks,
 };
 std::string_view ToString(TransitionReason reason);
 
@@ -161,6 +162,7 @@ struct MissionInputs {
   double depth_age = 0.0;   ///< of the last depth image, or of the flight if none has come [s]
   double foot_force = 0.0;  ///< sum over the feet [N]
   bool has_plan = false;    ///< a certified plan exists
+  bool looks = false;       ///< the vehicle flies to where it looks from, not to the pad
   bool lands =
       false;  ///< what is flown ends in contact, whatever the mode: nothing else was certified
   bool at_goal = false;  ///< the planner takes what was commanded as reached: no use to wait for it

@@ -11,6 +11,7 @@
 #include "touchdown/estimation/own_state/own_state_options.h"
 #include "touchdown/estimation/pad/pad_filter.h"
 #include "touchdown/estimation/pad/pad_predictor.h"
+#include "touchdown/planning/look/scout.h"
 #include "touchdown/planning/map/occupancy_map.h"
 #include "touchdown/planning/map/persistent_map.h"
 #include "touchdown/planning/replan/planner.h"
@@ -81,6 +82,7 @@ struct OnboardOptions {
 struct OnboardParts {
   std::unique_ptr<planning::Planner> planner;
   bool planner_lands = true;  ///< its plans may end in contact
+  std::unique_ptr<planning::Scout> scout;  ///< says where to look from; nullptr: nowhere
   std::unique_ptr<Controller> controller;
   bool law_compensates =
       true;  ///< it is told of the disturbance, and its thrusts lead the rotors' lag

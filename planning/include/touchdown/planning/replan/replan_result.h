@@ -69,6 +69,8 @@ struct ReplanInput {
   estimation::VehicleState vehicle;  ///< estimated state at t_now
   const estimation::PadPrediction* pad = nullptr;
   EndpointTarget endpoint;
+  /// Fly there and rest, to look (look/scout.h), instead of to the endpoint. In W [m].
+  std::optional<Eigen::Vector3d> look_from_W;
   /// Steady force on the vehicle beside gravity and drag in still air, over its mass, in W [m/s^2]. Plans keep the
   /// limits that it leaves (LimitsUnder).
   Eigen::Vector3d pull_W = Eigen::Vector3d::Zero();

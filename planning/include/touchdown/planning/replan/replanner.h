@@ -26,7 +26,6 @@ struct ReplannerState {
   std::optional<double> asked_t;  ///< when the last answer took over [s]
   std::optional<Attempt>
       unfinished;  ///< at which the last step, without a plan, ran out of its budget
-  std::optional<Eigen::Vector3d> looks_at_W;  ///< `next` leads to where this cell is in sight [m]
   std::optional<double> climb;                ///< `next` is the caller's rest with this climb [m]
   std::optional<double>
       strip_t;  ///< when the strip over the pad was last known [s], and the strip:
