@@ -296,7 +296,7 @@ const planning::ReplanResult& Pilot::Ask(bool for_plan, const estimation::PadFil
   looks_from_.reset();
   input.look_from_W.reset();
   if (parts_.scout && input.pad != nullptr) {
-    looks_from_ = parts_.scout->Step(input, cameras, map, for_plan && !arriving());
+    looks_from_ = parts_.scout->Step(input, cameras, map, for_plan && !arriving() && !lands_);
     if (looks_from_) input.look_from_W = looks_from_->p_WB;
   }
   const planning::ReplanResult& result =

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <limits>
 #include <queue>
 #include <unordered_map>
@@ -20,9 +22,9 @@ constexpr int kMostSpans = 60000;         // that a survey expands
 constexpr double kBetweenBalls = 0.15;    // along the way [m]
 constexpr double kSoon = 1.5;  // cells so far along the way are worth a third of the first ones [m]
 constexpr std::size_t kMostNeeded = 600;  // cells
-constexpr int kStride = 3;                // cells between places
-constexpr std::size_t kMostPlaces = 12000;
-constexpr int kMostTraced = 60;   // places from which sight is traced
+constexpr int kStrides[] = {1, 2, 4};  // cells between places
+constexpr std::size_t kMostPlaces = 4000, kMostTried = 1500;
+constexpr int kMostTraced = 60;  // of these, from which sight is traced
 constexpr double kInside = 0.08;  // of the image's edge [rad]
 constexpr double kFlown = 1.0, kTurned = 1.2, kStays = 0.6;  // [m/s], [rad/s], [s]
 constexpr double kSamePlace = 0.4, kSameYaw = 0.5;           // [m], [rad]
@@ -72,22 +74,23 @@ Eigen::Matrix3d Hovering(double yaw, const Eigen::Vector3d& pull_W) {
 class Sight {
  public:
   Sight(const LookCamera& camera, const Viewpoint& from, const Eigen::Vector3d& pull_W)
-      : camera_(camera) {
+      : reach_(camera.reach) {
     const Eigen::Matrix3d R_WB = Hovering(from.yaw, pull_W);
     R_CW_ = (R_WB * camera.R_BC).transpose();
     p_WC_ = from.p_WB + R_WB * camera.p_BC;
+    const estimation::CameraIntrinsics& k = camera.intrinsics;
+    const auto inside = [&k](double pixel, double centre, double inwards) {
+      return std::tan(std::atan((pixel - centre) / k.focal) + inwards);
+    };
+    low_ = {inside(0.0, k.cx, kInside), inside(0.0, k.cy, kInside)};
+    high_ = {inside(k.width, k.cx, -kInside), inside(k.height, k.cy, -kInside)};
   }
 
   bool Holds(const Eigen::Vector3d& p_W) const {
     const Eigen::Vector3d p_C = R_CW_ * (p_W - p_WC_);
-    const estimation::CameraIntrinsics& k = camera_.intrinsics;
-    if (p_C.z() < kNearest || p_C.z() > camera_.reach) return false;
-    const auto within = [&](double across, double centre, int pixels) {
-      const double angle = std::atan2(across, p_C.z());
-      return angle > std::atan((0.0 - centre) / k.focal) + kInside &&
-             angle < std::atan((pixels - centre) / k.focal) - kInside;
-    };
-    return within(p_C.x(), k.cx, k.width) && within(p_C.y(), k.cy, k.height);
+    const Eigen::Array2d across = p_C.head<2>().array();
+    return p_C.z() >= kNearest && p_C.z() <= reach_ && (across > p_C.z() * low_).all() &&
+           (across < p_C.z() * high_).all();
   }
 
   /// Nothing that is known to block is before the cell.
@@ -99,7 +102,8 @@ class Sight {
 
  private:
   static constexpr double kNearest = 0.25;  // [m]
-  const LookCamera& camera_;
+  double reach_;
+  Eigen::Array2d low_, high_;  // of the image, over the depth
   Eigen::Matrix3d R_CW_;
   Eigen::Vector3d p_WC_;
 };
@@ -142,13 +146,16 @@ bool Lookout::NoteNeeded(const HullSpace& hull, const Eigen::Vector3d& from) {
     return true;
   };
   ForEachUnseen(hull, from, note);
+  begin_ = unseen_from_ = {from, 0.0};
   Eigen::Vector3d before = from;
   for (const Eigen::Vector3d& place : path_) {
     const double length = (place - before).norm();
     const int steps = std::max(1, static_cast<int>(std::ceil(length / kBetweenBalls)));
     for (int i = 1; i <= steps; ++i) {
       along += length / steps;
-      ForEachUnseen(hull, before + (place - before) * i / steps, note);
+      const Eigen::Vector3d p = before + (place - before) * i / steps;
+      ForEachUnseen(hull, p, note);
+      if (needed_.empty()) unseen_from_ = {p, along};
     }
     before = place;
   }
@@ -158,17 +165,28 @@ bool Lookout::NoteNeeded(const HullSpace& hull, const Eigen::Vector3d& from) {
   return !needed_.empty();
 }
 
-/// The nearest first.
-void Lookout::Flood(const HullSpace& hull, const Eigen::Vector3d& from) {
+/// Adds places to which cells lead that were seen free, as densely as their number allows.
+void Lookout::Flood(const HullSpace& hull, const Place& from) {
+  const std::size_t before = places_.size();
+  for (const int stride : kStrides) {
+    places_.resize(before);
+    if (Flood(hull, from, stride)) return;
+  }
+}
+
+/// False: there are more than fit.
+bool Lookout::Flood(const HullSpace& hull, const Place& begin, int stride) {
   const OccupancyMap& map = *hull.space->map;
-  const double side = kStride * map.resolution();
+  const Eigen::Vector3d& from = begin.p_W;
+  const double side = stride * map.resolution();
+  const std::size_t most = places_.size() + kMostPlaces;
   const auto place = [&](const CellIndex& node) -> Eigen::Vector3d {
     return from + side * node.cast<double>();
   };
   const double at_start = hull.radius() + kSweepRoom;
   const auto fits = [&](const Eigen::Vector3d& p) {
     return !hull.space->Blocked(p) && ForEachUnseen(hull, p, [&](const CellIndex& cell) {
-      return !map.IsOccupied(cell) && (map.CentreOf(cell) - from).norm() < at_start;
+      return !map.IsOccupied(cell) && (map.CentreOf(cell) - begin_.p_W).norm() < at_start;
     });
   };
   struct Entry {
@@ -179,12 +197,12 @@ void Lookout::Flood(const HullSpace& hull, const Eigen::Vector3d& from) {
   std::unordered_map<std::int64_t, double> ways = {{KeyOf(CellIndex::Zero()), 0.0}};
   std::priority_queue<Entry> queue;
   queue.push({0.0, CellIndex::Zero()});
-  places_.clear();
-  while (!queue.empty() && places_.size() < kMostPlaces) {
+  while (!queue.empty()) {
+    if (places_.size() == most) return false;
     const Entry at = queue.top();
     queue.pop();
     if (at.way > ways[KeyOf(at.node)]) continue;
-    places_.push_back({place(at.node), at.way});
+    places_.push_back({place(at.node), begin.way + at.way});
     for (int i = 0; i < 27; ++i) {
       const CellIndex next = at.node + CellIndex(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
       const double way = at.way + side * (next - at.node).cast<double>().norm();
@@ -197,6 +215,7 @@ void Lookout::Flood(const HullSpace& hull, const Eigen::Vector3d& from) {
       queue.push({way, next});
     }
   }
+  return true;
 }
 
 std::optional<Look> Lookout::Choose(const HullSpace& hull, const std::vector<LookCamera>& cameras,
@@ -204,7 +223,9 @@ std::optional<Look> Lookout::Choose(const HullSpace& hull, const std::vector<Loo
                                     const Eigen::Vector3d& pull_W,
                                     const std::vector<Viewpoint>& struck) {
   const OccupancyMap& map = *hull.space->map;
-  Flood(hull, vehicle.p_WB);
+  places_.clear();
+  Flood(hull, begin_);
+  if (unseen_from_.way > 0.0) Flood(hull, unseen_from_);
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
   double all = 0.0;
   for (const NeededCell& needed : needed_) {
@@ -222,7 +243,9 @@ std::optional<Look> Lookout::Choose(const HullSpace& hull, const std::vector<Loo
   std::vector<Candidate> candidates;
   const double lowest = hull.pad != nullptr ? LowestRest(vehicle.t, hull)
                                             : -std::numeric_limits<double>::infinity();
-  for (const Place& place : places_) {
+  const std::size_t every = 1 + places_.size() / kMostTried;
+  for (std::size_t i = 0; i < places_.size(); i += every) {
+    const Place& place = places_[i];
     if (place.p_W.z() < lowest) continue;
     const Eigen::Vector3d to = middle - place.p_W;
     const Viewpoint view = {place.p_W, std::atan2(to.y(), to.x())};
@@ -240,12 +263,13 @@ std::optional<Look> Lookout::Choose(const HullSpace& hull, const std::vector<Loo
   }
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const Candidate& a, const Candidate& b) { return a.worth > b.worth; });
+  if (getenv("LOOKDBG")) fprintf(stderr, "   places %zu needed %zu candidates %zu middle %.2f %.2f %.2f first %.2f %.2f %.2f\n", places_.size(), needed_.size(), candidates.size(), middle.x(), middle.y(), middle.z(), map.CentreOf(needed_[0].cell).x(), map.CentreOf(needed_[0].cell).y(), map.CentreOf(needed_[0].cell).z());
   std::optional<Look> best;
   double best_worth = 0.0;
   int traced = 0;
   for (const Candidate& candidate : candidates) {
     if (candidate.worth <= best_worth || ++traced > kMostTraced) break;
-    Look look = {candidate.view, candidate.way, {}};
+    Look look = {candidate.view, candidate.way, candidate.time, {}};
     double worth = 0.0;
     for (const NeededCell& needed : needed_) {
       for (const LookCamera& camera : cameras) {

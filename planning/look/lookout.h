@@ -17,6 +17,7 @@ namespace touchdown::planning {
 struct Look {
   Viewpoint from;
   double way = 0.0;              ///< to there through cells that were seen free [m]
+  double time = 0.0;             ///< that it will take [s]
   std::vector<CellIndex> cells;  ///< in sight of it, of those that are needed
 };
 
@@ -46,15 +47,17 @@ class Lookout {
                              const Eigen::Vector3d& pull_W, const std::vector<Viewpoint>& struck);
 
  private:
-  void Flood(const HullSpace& hull, const Eigen::Vector3d& from);
-
   struct Place {
     Eigen::Vector3d p_W;
-    double way;  ///< [m]
+    double way;  ///< to there [m]
   };
+  void Flood(const HullSpace& hull, const Place& from);
+  bool Flood(const HullSpace& hull, const Place& from, int stride);
+
   SpanSearch search_;
   GuidePath path_;
   std::vector<NeededCell> needed_;
+  Place begin_, unseen_from_;  ///< of the way, and the last place of its part that was seen
   std::vector<Place> places_;
 };
 

@@ -40,7 +40,8 @@ class Scout::Impl {
     if (!was_.empty() && t > was_.back().t + kGap) Pause();
     if (look_ && !(may_look && StillLooks(input, cameras, map))) Pause();
     const int images = Images(cameras);
-    was_.push_back({t, images, input.vehicle.p_WB});
+    const Eigen::Vector3d goal = Goal(input), at = input.vehicle.p_WB;
+    was_.push_back({t, images, at, goal});
     if (look_) {
       while (was_.size() > 1 && was_[1].t <= t - kPatience) was_.pop_front();
       return look_->from;
@@ -50,7 +51,6 @@ class Scout::Impl {
       return std::nullopt;
     }
     asked_t_ = t;
-    const Eigen::Vector3d goal = Goal(input), at = input.vehicle.p_WB;
     if ((goal - at).norm() < kAtGoal) return std::nullopt;
     FreeSpace space;
     space.map = &map;
@@ -58,9 +58,7 @@ class Scout::Impl {
     space.ceiling = options_.ceiling_height;
     LayPadStrip(*input.pad, input.endpoint, at, input.t_start, input.t_start + options_.min_duration,
                 options_.pad_radius, options_.contact_height, &space);
-    const double before = lookout_.Length(space, was_.front().p_WB, goal);
-    const double now = lookout_.Length(space, at, goal);
-    if (now < before - kNearer || !std::isfinite(now)) return std::nullopt;
+    if (Progresses(space, was_.front(), at, goal)) return std::nullopt;
     HullSpace hull;
     hull.space = &space;
     hull.hull_radius = options_.hull_radius;
@@ -75,9 +73,9 @@ class Scout::Impl {
       struck_.clear();
       return std::nullopt;
     }
-    if (getenv("LOOKDBG")) fprintf(stderr, "%.2f look at %.2f %.2f %.2f -> %.2f %.2f %.2f yaw %.2f way %.2f sees %zu len %.2f before %.2f\n", t, at.x(), at.y(), at.z(), look_->from.p_WB.x(), look_->from.p_WB.y(), look_->from.p_WB.z(), look_->from.yaw, look_->way, look_->cells.size(), now, before);
+    if (getenv("LOOKDBG")) fprintf(stderr, "%.2f look at %.2f %.2f %.2f -> %.2f %.2f %.2f yaw %.2f way %.2f sees %zu\n", t, at.x(), at.y(), at.z(), look_->from.p_WB.x(), look_->from.p_WB.y(), look_->from.p_WB.z(), look_->from.yaw, look_->way, look_->cells.size());
     was_.clear();
-    was_.push_back({t, images, at});
+    was_.push_back({t, images, at, goal});
     until_ = t + look_->way / kSlowest + kLonger;
     images_at_ = std::numeric_limits<int>::max();
     return look_->from;
@@ -92,8 +90,19 @@ class Scout::Impl {
   struct Was {
     double t;
     int images;
-    Eigen::Vector3d p_WB;
+    Eigen::Vector3d p_WB, goal_W;
   };
+
+  /// Whether the vehicle is nearer to where the goal was then, or to where it is now.
+  bool Progresses(const FreeSpace& space, const Was& was, const Eigen::Vector3d& at,
+                  const Eigen::Vector3d& goal) {
+    const auto nearer = [&](const Eigen::Vector3d& to) {
+      const double then = lookout_.Length(space, was.p_WB, to);
+      const double now = lookout_.Length(space, at, to);
+      return !std::isfinite(now) || now < then - kNearer;
+    };
+    return ((goal - was.goal_W).norm() > kNearer && nearer(was.goal_W)) || nearer(goal);
+  }
 
   static bool IsLongAgo(const Was& was, double t, int images) {
     return was.t <= t - kPatience && was.images <= images - kImages;
@@ -123,13 +132,13 @@ class Scout::Impl {
       return false;
     }
     const Viewpoint& from = look_->from;
+    const bool near = (input.vehicle.p_WB - from.p_WB).norm() < kThere;
     const bool there =
-        (input.vehicle.p_WB - from.p_WB).norm() < kThere &&
-        std::abs(estimation::WrapAngle(estimation::Yaw(input.vehicle.q_WB) - from.yaw)) < kTurnedTo;
+        near && std::abs(estimation::WrapAngle(estimation::Yaw(input.vehicle.q_WB) - from.yaw)) < kTurnedTo;
     const int images = Images(cameras);
     if (there) images_at_ = std::min(images_at_, images);
     const bool in_vain = images_at_ < std::numeric_limits<int>::max() && images >= images_at_ + kLooks;
-    const bool stands = !there && was_.front().t <= input.t_now - kPatience &&
+    const bool stands = !near && was_.front().t <= input.t_now - kPatience &&
                         (was_.front().p_WB - input.vehicle.p_WB).norm() < kNearer;
     if (!in_vain && !stands && input.t_now < until_) return true;
     if (getenv("LOOKDBG")) fprintf(stderr, "%.2f struck %s, unseen %ld of %zu\n", input.t_now, in_vain ? "in vain" : stands ? "stands" : "late", static_cast<long>(unseen), look_->cells.size());

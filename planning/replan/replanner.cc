@@ -35,6 +35,7 @@ constexpr int kUsualPaths = 32;       // room for those of one step
 constexpr int kUsualPathPoints = 512;
 constexpr double kClockRounding = 1e-6;  // [s]
 constexpr double kRestartAfter = 2.0;    // a longer pause between calls resets the memory [s]
+constexpr double kLowestWait = 0.6;      // of the body over a deck below a roof [m]
 constexpr double kLookAhead = 2.0;       // of the cells that the next stops need [s]
 
 /// Length of what is left of a curve over the straight line between its ends, at least 1.
@@ -134,7 +135,7 @@ class Replanner::Impl {
   const ReplanResult& RefuseState(const ReplanInput& input, const char* wrong);
   void NoteAsked(double t_start);
   SplineState Start(const ReplanInput& input);
-  double FirstFreeArrival(const ReplanInput& input, double T, const OccupancyMap& map) const;
+  double FindFreeEnd(const ReplanInput& input, double T, const OccupancyMap& map);
   Attempt FirstAttempt(const ReplanInput& input, const SplineState& start, const FreeSpace& plain,
                        AttemptFacts* facts);
   AttemptRequest RequestFor(const ReplanInput& input, const SplineState& start,
@@ -400,15 +401,23 @@ const ReplanResult& Replanner::Impl::Rest(const ReplanInput& input, double climb
   return Finish(fallback_.Rest(FactsFor(input, start, hull), climb, &result_), input.t_start);
 }
 
-/// The first arrival from T on, and before the next attempt's, at which the plan's end is free; T if there is none.
-/// So a pad that passes an obstacle is met behind it.
-double Replanner::Impl::FirstFreeArrival(const ReplanInput& input, double T,
-                                         const OccupancyMap& map) const {
+/// The first arrival from T on, and before the next attempt's, at which the plan's end is free. So a pad that passes an
+/// obstacle is met behind it. Under a roof there is none: then T, and an end above the pad comes down.
+double Replanner::Impl::FindFreeEnd(const ReplanInput& input, double T, const OccupancyMap& map) {
   const FreeSpace space = Space(map);
   const double latest = std::min(options_.constants.stretch * T, options_.max_duration);
   for (double later = T; later <= latest; later *= options_.constants.end_step) {
     const SplineState end = EndStateAt(*pad_, end_, input.t_start + later).state;
     if (!space.Blocked(end.p)) return later;
+  }
+  if (!pad_->has_deck() || end_.touches()) return T;
+  const Eigen::Vector3d pad = pad_->MeanAt(input.t_start + T).p_WP;
+  for (double height = end_.height - map.resolution(); height >= kLowestWait;
+       height -= map.resolution()) {
+    if (space.Blocked(Eigen::Vector3d(pad + height * Eigen::Vector3d::UnitZ()))) continue;
+    end_.height = height;
+    end_.height_floor = std::min(end_.height_floor, height);
+    break;
   }
   return T;
 }
@@ -461,7 +470,7 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
   if (resumes_ && !on_plan && !facts.lands_soon && !result_.from_odometry) attempt = *resumes_;
   attempt_.BeginStep();
   for (int tried = 1;; ++tried) {
-    if (!facts.lands_soon) attempt.duration = FirstFreeArrival(input, attempt.duration, map);
+    if (!facts.lands_soon) attempt.duration = FindFreeEnd(input, attempt.duration, map);
     FreeSpace space = SpaceOverPad(input, start, input.t_start + attempt.duration, map);
     const HullSpace hull = HullIn(space, DeckOf(input));
     if (attempt.unseen_reach > 0.0) {
