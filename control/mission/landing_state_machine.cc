@@ -205,6 +205,7 @@ MissionStep Step(const MissionState& state, const MissionInputs& inputs,
   if (s.mode == MissionMode::kTracking && Planned(inputs) && s.waits_above) {
     hold = DescentHold::kAbove;
   }
+  if (inputs.looks) hold = DescentHold::kLook;
   return {s, OutputsOf(s, transition.reason, hold, now.gate, GuidanceOf(s, inputs, now))};
 }
 

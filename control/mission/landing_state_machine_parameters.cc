@@ -18,10 +18,10 @@ std::string_view ToString(MissionMode mode) {
 
 std::string_view ToString(TransitionReason reason) {
   static constexpr std::array<std::string_view, 22> kNames = {
-      "none",      "pad_converged", "align_timeout", "above_pad",         "arriving",
-      "contact",   "pad_lost",      "tags_lost",     "error_too_large",   "too_fast",
-      "gust",      "plan_failed",   "no_contact",    "climb_complete",    "climb_timeout",
-      "recovered", "invalid_input", "emergency",     "emergency_cleared", "own_state_lost",
+      "none",       "pad_converged", "align_timeout", "above_pad",         "arriving",
+      "contact",    "pad_lost",      "tags_lost",     "error_too_large",   "too_fast",
+      "gust",       "plan_failed",   "no_contact",    "climb_complete",    "climb_timeout",
+      "recovered",  "invalid_input", "emergency",     "emergency_cleared", "own_state_lost",
       "depth_lost", "looks"};
   return kNames.at(static_cast<std::size_t>(reason));
 }
@@ -33,8 +33,8 @@ std::string_view ToString(Gate gate) {
 }
 
 std::string_view ToString(DescentHold hold) {
-  static constexpr std::array<std::string_view, 5> kNames = {"none", "gate", "corridor", "lag",
-                                                             "above"};
+  static constexpr std::array<std::string_view, 6> kNames = {"none", "gate",  "corridor",
+                                                             "lag",  "above", "look"};
   return kNames.at(static_cast<std::size_t>(hold));
 }
 

@@ -112,6 +112,7 @@ OnboardParts LandingParts(const OnboardOptions& options) {
   law.tilt_max = options.envelope.TrackingTilt();
   OnboardParts parts;
   parts.planner = std::make_unique<planning::Replanner>(planner, solvers::StandardBackends());
+  parts.scout = std::make_unique<planning::Scout>(planner);
   parts.controller = MakeController("geometric", options.model, law);
   parts.predictor = std::make_unique<estimation::BeliefPredictor>();
   return parts;

@@ -78,8 +78,7 @@ struct Onboard::Parts {
     if (!(pilot->plans_often() ? close : usual)) return;
     if (keep_before) plan.before = pilot->replanner_state();
     AddThreadCpu(&times.planning, [&] {
-      plan.answer = pilot->Replan(senses.own().now(), senses.pad(), senses.cameras(),
-                                  senses.map());
+      plan.answer = pilot->Replan(senses.own().now(), senses.pad(), senses.cameras(), senses.map());
     });
     plan.idle = pilot->idle();
     if (plan.answer != nullptr) plan.asked = &pilot->last_replan();

@@ -90,6 +90,7 @@ Pilot::Pilot(const OnboardOptions& options, const OnboardParts& parts,
     }
   }
   parts_.planner->Prepare(map);
+  if (parts_.scout) parts_.scout->Prepare(map);
   parts_.planner->CommitHover(start.p_WB, start.t);
   yaw_.yaw = estimation::Yaw(start.q_WB);
   yaw_t_ = start.t;
@@ -216,8 +217,8 @@ const planning::ReplanResult* Pilot::Replan(const estimation::VehicleState& vehi
   const bool kept = result.status == planning::ReplanStatus::kKept;
   lands_ = parts_.planner_lands && result.Lands();
   const bool to_contact = wants_plan && !looks_from_ && input.endpoint.leads_to_contact();
-  const bool lands_as_wanted = to_contact && kept && lands_ &&
-                               result.reason != planning::ReplanReason::kInvalidInput;
+  const bool lands_as_wanted =
+      to_contact && kept && lands_ && result.reason != planning::ReplanReason::kInvalidInput;
   at_goal_ = result.reason == planning::ReplanReason::kAtGoal;
   last_planned_ = result.status == planning::ReplanStatus::kPlanned || at_goal_ || lands_as_wanted;
   has_plan_ = last_planned_ || kept;

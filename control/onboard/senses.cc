@@ -142,7 +142,8 @@ void Senses::NoteCamera(const estimation::DepthImage& image) {
     known = cameras_.insert(cameras_.end(), {image.intrinsics, image.p_BC, image.R_BC, 0.0, 0});
   }
   known->intrinsics = image.intrinsics;
-  known->reach = std::min(image.max_range, map_.options().thinnest_obstacle * image.intrinsics.focal);
+  known->reach =
+      std::min(image.max_range, map_.options().thinnest_obstacle * image.intrinsics.focal);
   ++known->images;
 }
 

@@ -448,12 +448,25 @@ TEST(LandingStateMachine, ABounceDoesNotInterruptContactAndIsNoRest) {
   EXPECT_NEAR(disarms_after(0.3), 0.2 + 0.3 + p.contact_time, 0.03);
 }
 
+TEST(LandingStateMachine, WhoGoesToLookInterruptsTheDescent) {
+  Mission mission;
+  mission.DescendTo(0.8);
+  mission.Run(2.0, [](MissionInputs& in) { in.looks = true; });
+  EXPECT_EQ(mission.outputs.mode, MissionMode::kTracking) << "also near and slow over the pad";
+  EXPECT_EQ(mission.outputs.descent_hold, DescentHold::kLook);
+  mission.Tick();
+  EXPECT_EQ(mission.outputs.mode, MissionMode::kLanding);
+  EXPECT_NE(mission.outputs.descent_hold, DescentHold::kLook);
+}
+
 TEST(LandingStateMachine, NamesAndParametersAreChecked) {
   EXPECT_EQ(ToString(MissionMode::kEmergencyStop), "emergency_stop");
   EXPECT_EQ(ToString(TransitionReason::kEmergencyCleared), "emergency_cleared");
   EXPECT_EQ(ToString(TransitionReason::kNoContact), "no_contact");
   EXPECT_EQ(ToString(DescentHold::kCorridor), "corridor");
   EXPECT_EQ(ToString(DescentHold::kAbove), "above");
+  EXPECT_EQ(ToString(DescentHold::kLook), "look");
+  EXPECT_EQ(ToString(TransitionReason::kLooks), "looks");
   EXPECT_EQ(ToString(Gate::kGust), "gust");
   EXPECT_EQ(ToString(Guidance::kIdle), "idle");
   MissionParameters parameters;

@@ -317,6 +317,7 @@ void BindReplan(py::module_& m) {
       .Field("t_start", &ReplanInput::t_start)
       .Field("vehicle", &ReplanInput::vehicle)
       .Field("endpoint", &ReplanInput::endpoint, Doc("EndpointTarget"))
+      .Field("look_from_W", &ReplanInput::look_from_W)
       .Field("pull_W", &ReplanInput::pull_W)
       .Field("margins", &ReplanInput::margins)
       .Done();

@@ -105,8 +105,8 @@ control::Onboard MakeOnboard(const Scenario& scenario, const estimation::Vehicle
   parts.planner = MakePlanner(scenario, model, registries);
   parts.planner_lands = planner.lands;
   if (planner.proves) {
-    parts.scout = std::make_unique<planning::Scout>(
-        PlannerOptions(scenario, model, registries.terms));
+    parts.scout =
+        std::make_unique<planning::Scout>(PlannerOptions(scenario, model, registries.terms));
   }
   const ControllerSetup setup{{scenario, law.parameters}, model, TrackingOptions(scenario, model)};
   parts.controller = MadeBy(law, setup, "controller");

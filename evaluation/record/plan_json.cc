@@ -35,6 +35,7 @@ Json InputJson(const SolvedStep& solved) {
                {"p_WB", VectorJson(input.vehicle.p_WB)},
                {"v_WB", VectorJson(input.vehicle.v_WB)},
                {"rest_climb_m", request.rest_climb ? Json(*request.rest_climb) : Json()},
+               {"look_from_W", input.look_from_W ? VectorJson(*input.look_from_W) : Json()},
                {"prediction", request.pad ? solved.scenario.pad.prediction : "none"}};
   json["endpoint"] = {{"height_m", input.endpoint.height},
                       {"sink_rate_mps", input.endpoint.sink_rate},

@@ -43,6 +43,11 @@ std::string QuestionText(const SolvedStep& solved) {
     const estimation::PadState& pad = solved.pad.front();
     text += fmt::format("  pad        p {} m, v {} m/s, predicted by {}\n", Vector(pad.p_WP),
                         Vector(pad.v_WP), solved.scenario.pad.prediction);
+    if (input.look_from_W) {
+      text += fmt::format("  wanted     rest at {} m, to look from there\n",
+                          Vector(*input.look_from_W));
+      return text + CommittedBefore(asked, input.t_start);
+    }
     const planning::EndpointTarget& end = input.endpoint;
     text +=
         end.touches()

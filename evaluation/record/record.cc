@@ -168,14 +168,13 @@ void WriteInput(SqliteStatement& insert, int id, const RecordPlan& row) {
     return input.look_from_W ? std::optional<double>((*input.look_from_W)[axis]) : std::nullopt;
   };
   insert.Run(id, input.t_now, input.t_start, row.request.rest_climb, look(0), look(1), look(2),
-             v.p_WB.x(), v.p_WB.y(),
-             v.p_WB.z(), v.v_WB.x(), v.v_WB.y(), v.v_WB.z(), v.q_WB.w(), v.q_WB.x(), v.q_WB.y(),
-             v.q_WB.z(), v.w_WB_B.x(), v.w_WB_B.y(), v.w_WB_B.z(), pad.p_WP.x(), pad.p_WP.y(),
-             pad.p_WP.z(), pad.v_WP.x(), pad.v_WP.y(), pad.v_WP.z(), pad.a_WP.x(), pad.a_WP.y(),
-             pad.a_WP.z(), pad.yaw, pad.yaw_rate, end.t_reference, end.height, end.sink_rate,
-             end.height_floor, end.arrival_sink, end.at_rest, input.pull_W.x(), input.pull_W.y(),
-             input.pull_W.z(), input.margins.own_state, input.margins.attitude,
-             input.margins.tracking);
+             v.p_WB.x(), v.p_WB.y(), v.p_WB.z(), v.v_WB.x(), v.v_WB.y(), v.v_WB.z(), v.q_WB.w(),
+             v.q_WB.x(), v.q_WB.y(), v.q_WB.z(), v.w_WB_B.x(), v.w_WB_B.y(), v.w_WB_B.z(),
+             pad.p_WP.x(), pad.p_WP.y(), pad.p_WP.z(), pad.v_WP.x(), pad.v_WP.y(), pad.v_WP.z(),
+             pad.a_WP.x(), pad.a_WP.y(), pad.a_WP.z(), pad.yaw, pad.yaw_rate, end.t_reference,
+             end.height, end.sink_rate, end.height_floor, end.arrival_sink, end.at_rest,
+             input.pull_W.x(), input.pull_W.y(), input.pull_W.z(), input.margins.own_state,
+             input.margins.attitude, input.margins.tracking);
 }
 
 std::optional<double> FiniteOrNone(double x) {
@@ -224,13 +223,13 @@ void WriteRequests(SqliteDb& db, const std::vector<RecordPlan>& plans) {
                      s.unfinished->arrival == planning::ArrivalMode::kFree,
                      s.unfinished->unseen_reach);
     }
-    state.Run(id, s.planned, s.around_unseen, s.looked_t, s.asked_t,
-              s.climb, s.strip_t, s.strip_from.x(), s.strip_from.y(), s.strip_to.x(),
-              s.strip_to.y(), s.strip_floor, s.current.curve.t0(), s.current.curve.interval(),
-              s.current.stop.t0(), s.current.stop.interval(), s.next.curve.t0(),
-              s.next.curve.interval(), s.next.stop.t0(), s.next.stop.interval(),
-              FiniteOrNone(s.current.t_stop), s.current.proven, s.current.from_unknown,
-              FiniteOrNone(s.next.t_stop), s.next.proven, s.next.from_unknown);
+    state.Run(id, s.planned, s.around_unseen, s.looked_t, s.asked_t, s.climb, s.strip_t,
+              s.strip_from.x(), s.strip_from.y(), s.strip_to.x(), s.strip_to.y(), s.strip_floor,
+              s.current.curve.t0(), s.current.curve.interval(), s.current.stop.t0(),
+              s.current.stop.interval(), s.next.curve.t0(), s.next.curve.interval(),
+              s.next.stop.t0(), s.next.stop.interval(), FiniteOrNone(s.current.t_stop),
+              s.current.proven, s.current.from_unknown, FiniteOrNone(s.next.t_stop), s.next.proven,
+              s.next.from_unknown);
     WritePoints(point, id, "current", s.current.curve.control_points());
     WritePoints(point, id, "current_stop", s.current.stop.control_points());
     WritePoints(point, id, "next", s.next.curve.control_points());

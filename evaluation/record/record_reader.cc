@@ -177,16 +177,16 @@ void ReadRequests(SqliteDb& db, std::vector<RecordPlan>* plans) {
     input.margins.attitude = row.Number();
     input.margins.tracking = row.Number();
   };
-  ReadEach(
-      TableRows(db, "replan_input",
-                "plan, t_now, t_start, rest_climb, look_x, look_y, look_z, px, py, pz, vx, vy, vz, qw, qx, qy, qz, wx, wy, "
-                "wz, pad_px, pad_py, pad_pz, pad_vx, pad_vy, pad_vz, pad_ax, pad_ay, pad_az, "
-                "pad_yaw, pad_yaw_rate, endpoint_t_reference, endpoint_height, "
-                "endpoint_sink_rate, endpoint_height_floor, endpoint_arrival_sink, "
-                "endpoint_at_rest, pull_x, pull_y, "
-                "pull_z, margin_own_state, margin_attitude, margin_tracking",
-                "plan"),
-      plans, read_input);
+  ReadEach(TableRows(db, "replan_input",
+                     "plan, t_now, t_start, rest_climb, look_x, look_y, look_z, px, py, pz, vx, "
+                     "vy, vz, qw, qx, qy, qz, wx, wy, "
+                     "wz, pad_px, pad_py, pad_pz, pad_vx, pad_vy, pad_vz, pad_ax, pad_ay, pad_az, "
+                     "pad_yaw, pad_yaw_rate, endpoint_t_reference, endpoint_height, "
+                     "endpoint_sink_rate, endpoint_height_floor, endpoint_arrival_sink, "
+                     "endpoint_at_rest, pull_x, pull_y, "
+                     "pull_z, margin_own_state, margin_attitude, margin_tracking",
+                     "plan"),
+           plans, read_input);
   const auto read_prediction = [](TableRows& row, RecordPlan* plan) {
     const bool known = row.Flag();
     estimation::PadKnowledge p;

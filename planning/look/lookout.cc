@@ -4,49 +4,44 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <limits>
+#include <memory_resource>
 #include <queue>
 #include <unordered_map>
 #include <unordered_set>
 
-#include "planning/map/voxel_traversal.h"
+#include "planning/look/sight.h"
 #include "touchdown/planning/certify/stored_stop.h"
-#include "touchdown/estimation/base/vehicle_model.h"
 
 namespace touchdown::planning {
 namespace {
 
-constexpr int kMostSpans = 60000;         // that a survey expands
-constexpr double kBetweenBalls = 0.15;    // along the way [m]
-constexpr double kSoon = 1.5;  // cells so far along the way are worth a third of the first ones [m]
+constexpr int kMostSpans = 60000;       // that a search expands
+constexpr double kBetweenBalls = 0.15;  // along the way [m]
+constexpr double kSoon = 1.5;           // cells so far along it are worth a third of the first [m]
 constexpr std::size_t kMostNeeded = 600;  // cells
+constexpr std::size_t kUsualPath = 512, kUsualNeeded = 40000;
 constexpr int kStrides[] = {1, 2, 4};  // cells between places
-constexpr std::size_t kMostPlaces = 4000, kMostTried = 1500;
-constexpr int kMostTraced = 60;  // of these, from which sight is traced
-constexpr double kInside = 0.08;  // of the image's edge [rad]
-constexpr double kFlown = 1.0, kTurned = 1.2, kStays = 0.6;  // [m/s], [rad/s], [s]
-constexpr double kSamePlace = 0.4, kSameYaw = 0.5;           // [m], [rad]
+constexpr std::size_t kMostPlaces = 4000, kMostTried = 1500, kMostTraced = 60;
+constexpr double kFlies = 1.0, kTurns = 1.2,
+                 kStays = 0.6;            // [m/s], [rad/s], [s]: what a look takes
+constexpr std::size_t kArena = 16 << 20;  // as much as the places and their neighbours take [bytes]
+constexpr double kSamePlace = 0.4, kSameYaw = 0.5;  // of a struck one [m], [rad]
 
-/// Of a cell of the window, or beside it, counted from its lowest.
-std::int64_t KeyOf(const CellIndex& at) {
-  return ((std::int64_t{at.z()} + 1024) << 40) + ((std::int64_t{at.y()} + 1024) << 20) + at.x() + 1024;
-}
-
-/// Calls visit(cell) for the cells of the hull's ball at p that were not seen free, and that SweepHull does not
-/// except. Ends early where it returns false.
+/// Calls visit(cell) for the cells of the hull's ball at p that were not seen free and are not the deck's. Ends where
+/// it returns false; whether none did.
 template <class Visit>
 bool ForEachUnseen(const HullSpace& hull, const Eigen::Vector3d& p, Visit&& visit) {
   const OccupancyMap& map = *hull.space->map;
   const double side = map.resolution(), radius = hull.radius() + kSweepRoom;
-  const bool over = hull.pad != nullptr && hull.space->OverPad(p);
-  const double deck = over ? hull.pad->MeanAt(0.0).p_WP.z() + side : 0.0;
-  const double exempt = std::max(map.options().ground_height, deck) + 1e-9;
+  double exempt = map.options().ground_height;
+  if (hull.pad != nullptr && hull.space->OverPad(p)) {
+    exempt = std::max(exempt, hull.pad->MeanAt(0.0).p_WP.z() + side);
+  }
   const CellIndex low = map.CellOf(p.array() - radius), high = map.CellOf(p.array() + radius);
-  const int count = high.x() - low.x() + 1;
+  const int count = std::min(64, high.x() - low.x() + 1);
   for (int z = low.z(); z <= high.z(); ++z) {
-    if ((z + 1) * side <= exempt) continue;
+    if ((z + 1) * side <= exempt + FreeSpace::kLevelRounding) continue;
     for (int y = low.y(); y <= high.y(); ++y) {
       const CellIndex first(low.x(), y, z);
       const bool inside = map.InWindow(first) && map.InWindow(first + CellIndex(count - 1, 0, 0));
@@ -62,51 +57,11 @@ bool ForEachUnseen(const HullSpace& hull, const Eigen::Vector3d& p, Visit&& visi
   return true;
 }
 
-/// How a vehicle that hovers against `pull_W` [m/s^2] is turned.
-Eigen::Matrix3d Hovering(double yaw, const Eigen::Vector3d& pull_W) {
-  const Eigen::Vector3d up = estimation::kGravity * Eigen::Vector3d::UnitZ() - pull_W;
-  return (Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), up) *
-          Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()))
-      .toRotationMatrix();
+/// Of cells that are less than a thousand from an origin.
+std::int64_t KeyOf(const CellIndex& from_origin) {
+  const CellIndex at = from_origin.array() + 1024;
+  return (std::int64_t{at.z()} << 40) + (std::int64_t{at.y()} << 20) + at.x();
 }
-
-/// What one camera has in its image from a place, whatever is between.
-class Sight {
- public:
-  Sight(const LookCamera& camera, const Viewpoint& from, const Eigen::Vector3d& pull_W)
-      : reach_(camera.reach) {
-    const Eigen::Matrix3d R_WB = Hovering(from.yaw, pull_W);
-    R_CW_ = (R_WB * camera.R_BC).transpose();
-    p_WC_ = from.p_WB + R_WB * camera.p_BC;
-    const estimation::CameraIntrinsics& k = camera.intrinsics;
-    const auto inside = [&k](double pixel, double centre, double inwards) {
-      return std::tan(std::atan((pixel - centre) / k.focal) + inwards);
-    };
-    low_ = {inside(0.0, k.cx, kInside), inside(0.0, k.cy, kInside)};
-    high_ = {inside(k.width, k.cx, -kInside), inside(k.height, k.cy, -kInside)};
-  }
-
-  bool Holds(const Eigen::Vector3d& p_W) const {
-    const Eigen::Vector3d p_C = R_CW_ * (p_W - p_WC_);
-    const Eigen::Array2d across = p_C.head<2>().array();
-    return p_C.z() >= kNearest && p_C.z() <= reach_ && (across > p_C.z() * low_).all() &&
-           (across < p_C.z() * high_).all();
-  }
-
-  /// Nothing that is known to block is before the cell.
-  bool Reaches(const CellIndex& cell, const OccupancyMap& map) const {
-    return TraverseCells(p_WC_, map.CentreOf(cell), map.resolution(), [&](const CellIndex& at) {
-      return at == cell || !map.IsOccupied(at);
-    });
-  }
-
- private:
-  static constexpr double kNearest = 0.25;  // [m]
-  double reach_;
-  Eigen::Array2d low_, high_;  // of the image, over the depth
-  Eigen::Matrix3d R_CW_;
-  Eigen::Vector3d p_WC_;
-};
 
 bool IsStruck(const Viewpoint& view, const std::vector<Viewpoint>& struck) {
   return std::any_of(struck.begin(), struck.end(), [&](const Viewpoint& old) {
@@ -117,13 +72,20 @@ bool IsStruck(const Viewpoint& view, const std::vector<Viewpoint>& struck) {
 
 }  // namespace
 
+Lookout::Lookout(double vertical_cost) : arena_(kArena), search_({.vertical = vertical_cost}) {
+  path_.reserve(kUsualPath);
+  needed_.reserve(kUsualNeeded);
+  places_.reserve(2 * kMostPlaces);
+  candidates_.reserve(2 * kMostTried);
+  for (Look* look : {&best_, &tried_}) look->cells.reserve(kMostNeeded + 1);
+}
+
 double Lookout::Length(const FreeSpace& space, const Eigen::Vector3d& from,
                        const Eigen::Vector3d& goal) {
   const OccupancyMap& map = *space.map;
-  // The last place of the window on the straight line.
   const Eigen::Vector3d low = map.CentreOf(map.origin()),
                         high = map.CentreOf(map.origin() + map.size() - CellIndex::Ones());
-  double share = 1.0;
+  double share = 1.0;  // of the straight line that is in the window
   for (int c = 0; c < 3; ++c) {
     const double along = goal[c] - from[c];
     if (along == 0.0) continue;
@@ -138,15 +100,17 @@ double Lookout::Length(const FreeSpace& space, const Eigen::Vector3d& from,
 bool Lookout::NoteNeeded(const HullSpace& hull, const Eigen::Vector3d& from) {
   const OccupancyMap& map = *hull.space->map;
   needed_.clear();
-  std::unordered_set<std::int64_t> noted;  // a cell is touched at several places
+  std::pmr::monotonic_buffer_resource arena(arena_.data(), arena_.size());
+  std::pmr::unordered_set<std::int64_t> noted(&arena);  // a cell is touched at several places
   double along = 0.0;
   const auto note = [&](const CellIndex& cell) {
-    if (map.IsOccupied(cell) || !noted.insert(KeyOf(cell - map.origin())).second) return true;
-    needed_.push_back({cell, std::exp(-along / kSoon)});
+    if (!map.IsOccupied(cell) && noted.insert(KeyOf(cell - map.origin())).second) {
+      needed_.push_back({cell, std::exp(-along / kSoon)});
+    }
     return true;
   };
   ForEachUnseen(hull, from, note);
-  begin_ = unseen_from_ = {from, 0.0};
+  begin_ = seen_until_ = {from, 0.0};
   Eigen::Vector3d before = from;
   for (const Eigen::Vector3d& place : path_) {
     const double length = (place - before).norm();
@@ -155,17 +119,17 @@ bool Lookout::NoteNeeded(const HullSpace& hull, const Eigen::Vector3d& from) {
       along += length / steps;
       const Eigen::Vector3d p = before + (place - before) * i / steps;
       ForEachUnseen(hull, p, note);
-      if (needed_.empty()) unseen_from_ = {p, along};
+      if (needed_.empty()) seen_until_ = {p, along};
     }
     before = place;
   }
-  const std::size_t step = 1 + needed_.size() / kMostNeeded;
-  for (std::size_t i = 0; i * step < needed_.size(); ++i) needed_[i] = needed_[i * step];
-  needed_.resize((needed_.size() + step - 1) / step);
+  const std::size_t every = 1 + needed_.size() / kMostNeeded;
+  for (std::size_t i = 0; i * every < needed_.size(); ++i) needed_[i] = needed_[i * every];
+  needed_.resize((needed_.size() + every - 1) / every);
   return !needed_.empty();
 }
 
-/// Adds places to which cells lead that were seen free, as densely as their number allows.
+/// Adds the places to which cells lead that were seen free, the nearest first, as densely as their number allows.
 void Lookout::Flood(const HullSpace& hull, const Place& from) {
   const std::size_t before = places_.size();
   for (const int stride : kStrides) {
@@ -175,17 +139,16 @@ void Lookout::Flood(const HullSpace& hull, const Place& from) {
 }
 
 /// False: there are more than fit.
-bool Lookout::Flood(const HullSpace& hull, const Place& begin, int stride) {
+bool Lookout::Flood(const HullSpace& hull, const Place& from, int stride) {
   const OccupancyMap& map = *hull.space->map;
-  const Eigen::Vector3d& from = begin.p_W;
-  const double side = stride * map.resolution();
+  const double side = stride * map.resolution(), at_start = hull.radius() + kSweepRoom;
   const std::size_t most = places_.size() + kMostPlaces;
   const auto place = [&](const CellIndex& node) -> Eigen::Vector3d {
-    return from + side * node.cast<double>();
+    return from.p_W + side * node.cast<double>();
   };
-  const double at_start = hull.radius() + kSweepRoom;
   const auto fits = [&](const Eigen::Vector3d& p) {
     return !hull.space->Blocked(p) && ForEachUnseen(hull, p, [&](const CellIndex& cell) {
+      // Where the vehicle is it may be.
       return !map.IsOccupied(cell) && (map.CentreOf(cell) - begin_.p_W).norm() < at_start;
     });
   };
@@ -194,20 +157,24 @@ bool Lookout::Flood(const HullSpace& hull, const Place& begin, int stride) {
     CellIndex node;
     bool operator<(const Entry& other) const { return way > other.way; }
   };
-  std::unordered_map<std::int64_t, double> ways = {{KeyOf(CellIndex::Zero()), 0.0}};
-  std::priority_queue<Entry> queue;
+  constexpr double kUnknown = std::numeric_limits<double>::infinity(), kClosed = -1.0;
+  std::pmr::monotonic_buffer_resource arena(arena_.data(), arena_.size());
+  std::pmr::unordered_map<std::int64_t, double> ways(&arena);
+  std::priority_queue<Entry, std::pmr::vector<Entry>> queue(std::less<Entry>(), &arena);
+  ways.emplace(KeyOf(CellIndex::Zero()), 0.0);
   queue.push({0.0, CellIndex::Zero()});
   while (!queue.empty()) {
     if (places_.size() == most) return false;
     const Entry at = queue.top();
     queue.pop();
     if (at.way > ways[KeyOf(at.node)]) continue;
-    places_.push_back({place(at.node), begin.way + at.way});
+    places_.push_back({place(at.node), from.way + at.way});
     for (int i = 0; i < 27; ++i) {
-      const CellIndex next = at.node + CellIndex(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
-      const double way = at.way + side * (next - at.node).cast<double>().norm();
-      const auto [known, is_new] = ways.emplace(KeyOf(next), std::numeric_limits<double>::infinity());
-      if (is_new && !fits(place(next))) known->second = -1.0;
+      const CellIndex step(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
+      const CellIndex next = at.node + step;
+      const double way = at.way + side * step.cast<double>().norm();
+      const auto [known, is_new] = ways.emplace(KeyOf(next), kUnknown);
+      if (is_new && !fits(place(next))) known->second = kClosed;
       if (way >= known->second) continue;
       const Eigen::Vector3d between = 0.5 * (place(at.node) + place(next));
       if (hull.space->Blocked(between)) continue;
@@ -218,73 +185,81 @@ bool Lookout::Flood(const HullSpace& hull, const Place& begin, int stride) {
   return true;
 }
 
-std::optional<Look> Lookout::Choose(const HullSpace& hull, const std::vector<LookCamera>& cameras,
-                                    const estimation::VehicleState& vehicle,
-                                    const Eigen::Vector3d& pull_W,
-                                    const std::vector<Viewpoint>& struck) {
+void Lookout::FindCandidates(const HullSpace& hull, const std::vector<LookCamera>& cameras,
+                             const estimation::VehicleState& vehicle, const Eigen::Vector3d& pull_W,
+                             const std::vector<Viewpoint>& struck) {
   const OccupancyMap& map = *hull.space->map;
   places_.clear();
   Flood(hull, begin_);
-  if (unseen_from_.way > 0.0) Flood(hull, unseen_from_);
+  if (seen_until_.way > 0.0) Flood(hull, seen_until_);
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
   double all = 0.0;
-  for (const NeededCell& needed : needed_) {
+  for (const Needed& needed : needed_) {
     middle += needed.worth * map.CentreOf(needed.cell);
     all += needed.worth;
   }
   middle /= all;
-  const double yaw_now = estimation::Yaw(vehicle.q_WB);
 
-  struct Candidate {
-    double worth;  // at most
-    Viewpoint view;
-    double way, time;
-  };
-  std::vector<Candidate> candidates;
-  const double lowest = hull.pad != nullptr ? LowestRest(vehicle.t, hull)
-                                            : -std::numeric_limits<double>::infinity();
+  candidates_.clear();
+  const double yaw_now = estimation::Yaw(vehicle.q_WB);
+  const double lowest =
+      hull.pad != nullptr ? LowestRest(vehicle.t, hull) : -std::numeric_limits<double>::infinity();
   const std::size_t every = 1 + places_.size() / kMostTried;
   for (std::size_t i = 0; i < places_.size(); i += every) {
     const Place& place = places_[i];
-    if (place.p_W.z() < lowest) continue;
     const Eigen::Vector3d to = middle - place.p_W;
-    const Viewpoint view = {place.p_W, std::atan2(to.y(), to.x())};
-    if (IsStruck(view, struck)) continue;
-    const double turn = std::abs(estimation::WrapAngle(view.yaw - yaw_now));
-    const double time = std::max(place.way / kFlown, turn / kTurned) + kStays;
-    double seen = 0.0;
-    for (const LookCamera& camera : cameras) {
-      const Sight sight(camera, view, pull_W);
-      for (const NeededCell& needed : needed_) {
-        if (sight.Holds(map.CentreOf(needed.cell))) seen += needed.worth;
-      }
-    }
-    if (seen > 0.0) candidates.push_back({seen / time, view, place.way, time});
-  }
-  std::stable_sort(candidates.begin(), candidates.end(),
-                   [](const Candidate& a, const Candidate& b) { return a.worth > b.worth; });
-  if (getenv("LOOKDBG")) fprintf(stderr, "   places %zu needed %zu candidates %zu middle %.2f %.2f %.2f first %.2f %.2f %.2f\n", places_.size(), needed_.size(), candidates.size(), middle.x(), middle.y(), middle.z(), map.CentreOf(needed_[0].cell).x(), map.CentreOf(needed_[0].cell).y(), map.CentreOf(needed_[0].cell).z());
-  std::optional<Look> best;
-  double best_worth = 0.0;
-  int traced = 0;
-  for (const Candidate& candidate : candidates) {
-    if (candidate.worth <= best_worth || ++traced > kMostTraced) break;
-    Look look = {candidate.view, candidate.way, candidate.time, {}};
+    const Viewpoint from = {place.p_W, std::atan2(to.y(), to.x())};
+    if (place.p_W.z() < lowest || IsStruck(from, struck)) continue;
+    const double turn = std::abs(estimation::WrapAngle(from.yaw - yaw_now));
+    const double time = std::max(place.way / kFlies, turn / kTurns) + kStays;
     double worth = 0.0;
-    for (const NeededCell& needed : needed_) {
-      for (const LookCamera& camera : cameras) {
-        const Sight sight(camera, look.from, pull_W);
-        if (!sight.Holds(map.CentreOf(needed.cell)) || !sight.Reaches(needed.cell, map)) continue;
-        look.cells.push_back(needed.cell);
-        worth += needed.worth / candidate.time;
-        break;
+    for (const LookCamera& camera : cameras) {
+      const Sight sight(camera, from, pull_W);
+      for (const Needed& needed : needed_) {
+        if (sight.Holds(map.CentreOf(needed.cell))) worth += needed.worth;
       }
     }
-    if (worth <= best_worth) continue;
-    best_worth = worth;
-    best = std::move(look);
+    if (worth > 0.0) candidates_.push_back({worth / time, from, place.way, time});
   }
-  return best;
+  const auto better = [](const Candidate& a, const Candidate& b) { return a.worth > b.worth; };
+  const std::size_t kept = std::min(kMostTraced, candidates_.size());
+  std::partial_sort(candidates_.begin(), candidates_.begin() + static_cast<std::ptrdiff_t>(kept),
+                    candidates_.end(), better);
+  candidates_.resize(kept);
+}
+
+/// What is in sight of the candidate; returns its worth over the time.
+double Lookout::Trace(const OccupancyMap& map, const std::vector<LookCamera>& cameras,
+                      const Candidate& candidate, const Eigen::Vector3d& pull_W, Look* look) const {
+  look->from = candidate.from;
+  look->way = candidate.way;
+  look->cells.clear();
+  double worth = 0.0;
+  for (const Needed& needed : needed_) {
+    const bool seen = std::any_of(cameras.begin(), cameras.end(), [&](const LookCamera& camera) {
+      const Sight sight(camera, look->from, pull_W);
+      return sight.Holds(map.CentreOf(needed.cell)) && sight.Reaches(needed.cell, map);
+    });
+    if (!seen) continue;
+    look->cells.push_back(needed.cell);
+    worth += needed.worth / candidate.time;
+  }
+  return worth;
+}
+
+const Look* Lookout::Choose(const HullSpace& hull, const std::vector<LookCamera>& cameras,
+                            const estimation::VehicleState& vehicle, const Eigen::Vector3d& pull_W,
+                            const std::vector<Viewpoint>& struck) {
+  FindCandidates(hull, cameras, vehicle, pull_W, struck);
+  double best = 0.0;
+  for (const Candidate& candidate : candidates_) {
+    if (candidate.worth <= best) break;
+    const double worth = Trace(*hull.space->map, cameras, candidate, pull_W, &tried_);
+    if (worth <= best) continue;
+    best = worth;
+    std::swap(best_, tried_);
+  }
+  return best > 0.0 ? &best_ : nullptr;
 }
 
 }  // namespace touchdown::planning

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a way still needs to have seen, and from where that is in sight.
 #pragma once
 
-#include <optional>
+#include <cstddef>
 #include <vector>
 
 #include <Eigen/Core>
@@ -16,49 +15,66 @@ namespace touchdown::planning {
 /// A place to look from, and what is to be seen there.
 struct Look {
   Viewpoint from;
-  double way = 0.0;              ///< to there through cells that were seen free [m]
-  double time = 0.0;             ///< that it will take [s]
+  double way = 0.0;              ///< to there, through cells that were seen free [m]
   std::vector<CellIndex> cells;  ///< in sight of it, of those that are needed
 };
 
-/// A cell that was never seen free, and that a way needs.
-struct NeededCell {
-  CellIndex cell;
-  double worth;  ///< to be seen: the more the sooner the way comes there
-};
-
-/// Surveys the map's window.
+/// Surveys the map's window: which cells a way to the goal still needs to have seen, and from where these are in sight.
+/// Allocates only to grow to a high-water mark.
 class Lookout {
  public:
-  explicit Lookout(double vertical_cost) : search_({.vertical = vertical_cost}) {}
+  explicit Lookout(double vertical_cost);
 
-  /// What the shortest way over what is not known to block costs [m]; infinite: there is none in the window. Where
-  /// the goal is out of the window the way ends at its border.
+  /// Makes room for maps with this one's window.
+  void Prepare(const OccupancyMap& map) { search_.Reserve(map); }
+
+  /// The potential: what the shortest way over what is not known to block costs [m]. Infinite: there is none in the
+  /// window. Where the goal is out of the window the way ends at its border, and the rest is straight.
   double Length(const FreeSpace& space, const Eigen::Vector3d& from, const Eigen::Vector3d& goal);
 
   /// Notes the cells that the hull would touch on that way, and that were never seen free; of many, some evenly.
-  /// False: there are none. @pre Length was finite
+  /// False: there are none. @pre the last Length, from the same place, was finite
   bool NoteNeeded(const HullSpace& hull, const Eigen::Vector3d& from);
 
   /// From where most of the needed cells are seen in the time that it takes, of all places to which cells lead that
-  /// were seen free. Not from where `struck` is. @pre NoteNeeded
-  std::optional<Look> Choose(const HullSpace& hull, const std::vector<LookCamera>& cameras,
-                             const estimation::VehicleState& vehicle,
-                             const Eigen::Vector3d& pull_W, const std::vector<Viewpoint>& struck);
+  /// were seen free. Not from where `struck` is. nullptr: from nowhere. Valid until the next call. @pre NoteNeeded
+  const Look* Choose(const HullSpace& hull, const std::vector<LookCamera>& cameras,
+                     const estimation::VehicleState& vehicle, const Eigen::Vector3d& pull_W,
+                     const std::vector<Viewpoint>& struck);
 
  private:
+  struct Needed {
+    CellIndex cell;
+    double worth;  ///< to be seen: the more the sooner the way comes there
+  };
   struct Place {
     Eigen::Vector3d p_W;
     double way;  ///< to there [m]
   };
+  struct Candidate {
+    double worth;  ///< of the needed cells in its image, over the time: nothing is between them
+    Viewpoint from;
+    double way, time;  ///< [m], [s]
+  };
+
   void Flood(const HullSpace& hull, const Place& from);
   bool Flood(const HullSpace& hull, const Place& from, int stride);
 
+  void FindCandidates(const HullSpace& hull, const std::vector<LookCamera>& cameras,
+                      const estimation::VehicleState& vehicle, const Eigen::Vector3d& pull_W,
+                      const std::vector<Viewpoint>& struck);
+  double Trace(const OccupancyMap& map, const std::vector<LookCamera>& cameras,
+               const Candidate& candidate, const Eigen::Vector3d& pull_W, Look* look) const;
+
+  std::vector<std::byte> arena_;  ///< of what a call needs alone
   SpanSearch search_;
   GuidePath path_;
-  std::vector<NeededCell> needed_;
-  Place begin_, unseen_from_;  ///< of the way, and the last place of its part that was seen
+  std::vector<Needed> needed_;
+  Place begin_,
+      seen_until_;  ///< of the way: where it begins, and where its part ends that was seen
   std::vector<Place> places_;
+  std::vector<Candidate> candidates_;
+  Look best_, tried_;
 };
 
 }  // namespace touchdown::planning

@@ -19,6 +19,7 @@
 #include "planning/replan/fallback_ladder.h"
 #include "planning/replan/plan_attempt.h"
 #include "planning/replan/replan_checks.h"
+#include "planning/replan/spaces.h"
 #include "planning/search/timed_path.h"
 #include "touchdown/planning/replan/attempt_ladder.h"
 #include "touchdown/planning/replan/goal.h"
@@ -51,11 +52,6 @@ EndpointTarget AtRest() {
   EndpointTarget end;
   end.height = 0.0;
   return end;
-}
-
-/// The deck below a known pad that has one; nullptr: none.
-const estimation::PadPrediction* DeckOf(const ReplanInput& input) {
-  return input.pad != nullptr && input.pad->has_deck() ? input.pad : nullptr;
 }
 
 }  // namespace
@@ -155,7 +151,7 @@ class Replanner::Impl {
   double reaction_ = 0.0;          // after which a stop of this step begins [s]
   std::optional<double> asked_t_;  // the last answer took over then [s]
   bool stands_ = false;            // something is committed
-  std::optional<GoalAt> look_from_;  // where a plan ends instead of at the pad
+  std::optional<GoalAt> look_from_;                 // where a plan ends instead of at the pad
   const estimation::PadPrediction* pad_ = nullptr;  // where a plan ends: this and ...
   EndpointTarget end_;                              // ... this
   ReplanResult result_;
@@ -170,13 +166,7 @@ class Replanner::Impl {
   double strip_t_ = kNeverTime;        // ... at this time
 };
 
-FreeSpace Replanner::Impl::Space(const OccupancyMap& map) const {
-  FreeSpace space;
-  space.map = &map;
-  space.floor = options_.floor_height;
-  space.ceiling = options_.ceiling_height;
-  return space;
-}
+FreeSpace Replanner::Impl::Space(const OccupancyMap& map) const { return SpaceFor(options_, map); }
 
 FreeSpace Replanner::Impl::SpaceOverPad(const ReplanInput& input, const SplineState& start,
                                         double t_end, const OccupancyMap& map) const {
@@ -245,14 +235,15 @@ void Replanner::Impl::Begin(const ReplanInput& input) {
   reaction_ = options_.reaction;
   limits_ = LimitsUnder(options_.limits, options_.problem.vehicle, input.pull_W);
   fallback_.SetLimits(limits_);
+  look_from_.reset();
   if (log_) log_->attempts.clear();
   result_.times = {};
   result_.guide_paths.Clear();
   result_.pairs = result_.solves = result_.rebinds = result_.work = 0;
   result_.from_odometry = result_.map_error = result_.committed = false;
   result_.proven = true;
-  result_.ends_in_contact = DeckOf(input) && !input.look_from_W &&
-                            input.endpoint.may_touch(options_.contact_height);
+  result_.ends_in_contact =
+      DeckOf(input) && !input.look_from_W && input.endpoint.may_touch(options_.contact_height);
   result_.unseen_W.reset();
   result_.reason = ReplanReason::kNone;
   result_.detail = result_.forbidden_by = {};
@@ -310,13 +301,7 @@ const char* Replanner::Impl::WrongInState(const ReplanInput& input) const {
 
 HullSpace Replanner::Impl::HullIn(const FreeSpace& space,
                                   const estimation::PadPrediction* pad) const {
-  HullSpace hull;
-  hull.space = &space;
-  hull.hull_radius = options_.hull_radius;
-  hull.margin = margin_;
-  hull.pad = pad;
-  hull.deck_half_size = options_.deck_half_size;
-  hull.foot_depth = options_.contact_height;
+  HullSpace hull = HullFor(options_, space, margin_, pad);
   hull.start_proven = !result_.from_odometry && next_.proven && !next_.from_unknown;
   return hull;
 }
@@ -362,8 +347,8 @@ FallbackFacts Replanner::Impl::FactsFor(const ReplanInput& input, const SplineSt
   facts.t0 = input.t_start;
   facts.reaction = reaction_;
   facts.hull = &hull;
-  facts.endpoint = input.look_from_W ? AtRest() : input.endpoint;
-  facts.look_from_W = input.look_from_W;
+  facts.endpoint = look_from_ ? AtRest() : input.endpoint;
+  if (look_from_) facts.look_from_W = input.look_from_W;
   facts.planned = planned_before_;
   return facts;
 }
@@ -431,8 +416,8 @@ Attempt Replanner::Impl::FirstAttempt(const ReplanInput& input, const SplineStat
     return GuessDuration(start, input.t_start, *pad_, end_, limits_, detour);
   };
   facts->fresh = guess(1.0);
-  facts->lands_soon = !result_.from_odometry &&
-                      LandsSoon(next_, input.t_start, end_, HullIn(plain, DeckOf(input)));
+  facts->lands_soon =
+      !result_.from_odometry && LandsSoon(next_, input.t_start, end_, HullIn(plain, DeckOf(input)));
   facts->at_rest = !result_.from_odometry && Fallback::AtRest(next_, input.t_start);
   facts->arrival = options_.arrival;
   facts->min_duration = options_.min_duration;
@@ -445,8 +430,7 @@ Attempt Replanner::Impl::FirstAttempt(const ReplanInput& input, const SplineStat
                                        options_.constants.retime_below * left;
   // A vehicle that follows a pad needs no shorter plans than usual. Only the last ones before a
   // contact are shorter.
-  const double shortest =
-      end_.touches() ? options_.min_contact_duration : options_.min_duration;
+  const double shortest = end_.touches() ? options_.min_contact_duration : options_.min_duration;
   Attempt attempt;
   attempt.duration = std::clamp(promised ? left : facts->fresh, shortest, options_.max_duration);
   // The prepared problems' free arrival has the usual lower bound.
@@ -537,8 +521,8 @@ AttemptRequest Replanner::Impl::RequestFor(const ReplanInput& input, const Splin
   request.bound = &bound_;
   // Shortly before contact nothing is kept: earlier pairs would push the vehicle there.
   const double left = next_.curve.t_end() - input.t_start;
-  request.keeps = request.starts_on_previous &&
-                  !(end_.leads_to_contact() && left < constants.near_contact);
+  request.keeps =
+      request.starts_on_previous && !(end_.leads_to_contact() && left < constants.near_contact);
   request.looks = !request.keeps || input.t_start - looked_t_ >= constants.look_every;
   if (request.looks) looked_t_ = input.t_start;
   request.log = log_ ? &log_->attempts.emplace_back() : nullptr;

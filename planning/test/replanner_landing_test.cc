@@ -237,5 +237,28 @@ TEST_F(LastStretch, ContactThatNeverComesEndsIt) {
   EXPECT_NEAR(t_, t_end + kLatestContact, 0.11);
 }
 
+// A vehicle that waits above the deck waits lower there.
+TEST(ReplannerLanding, UnderARoofTheEndComesDown) {
+  OccupancyMap map = ObservedMap();
+  for (double x = 1.0; x < 5.0; x += 0.1) {
+    for (double y = -2.0; y < 2.0; y += 0.1) map.SetOccupied({x, y, 2.05});
+  }
+  const ArcPad pad({3.0, 0.0, kDeck}, 0.0, 0.0, 0.0);
+  ReplannerOptions options = Options(ArrivalMode::kFixed);
+  options.deck_half_size = 0.5;
+  for (const double height : {1.0, 1.62}) {
+    Replanner replanner(options, solvers::StandardBackends());
+    const Eigen::Vector3d start(-3.0, 0.0, 1.2);
+    replanner.CommitHover(start, 0.0);
+    ReplanInput input = Input(start, pad, 0.0);
+    input.endpoint.height = input.endpoint.height_floor = height;
+    const ReplanResult& result = replanner.Replan(input, map);
+    ASSERT_EQ(result.status, ReplanStatus::kPlanned) << height;
+    const double end = result.curve.Position(result.curve.t_end()).z();
+    EXPECT_LE(end, 1.67) << "the roof's zone begins";
+    EXPECT_GE(end, height == 1.0 ? kDeck + 1.0 - 1e-9 : 1.5) << "no lower than it must";
+  }
+}
+
 }  // namespace
 }  // namespace touchdown::planning

@@ -94,6 +94,10 @@ void FuzzReplanner(std::string_view bytes) {
     input.endpoint = {input.t_now, choices.Wild(0.1, 2.0), choices.Wild(0.0, 1.0), choices.Wild(0.0, 2.0)};
     input.pull_W = {choices.Wild(-1.0, 1.0), 0.0, choices.Wild(-1.0, 1.0)};
     input.margins.tracking = choices.Wild(0.0, 0.1);
+    if (choices.Below(8) == 0) {
+      input.look_from_W =
+          at.p_WB + Vector3d(choices.Wild(-2.0, 2.0), choices.In(-2.0, 2.0), choices.In(-1.0, 1.0));
+    }
     input.pad = &pad;
     const int kind = choices.Below(8);
     const planning::ReplanResult& result =

@@ -21,4 +21,5 @@ export const REASONS = {
   emergency_cleared: "the emergency flag is cleared",
   own_state_lost: "the own state was unusable for too long",
   depth_lost: "no depth image came for too long",
+  looks: "there was no progress, and it flies to where it sees more",
 };

@@ -31,6 +31,7 @@ export function descentWords(text) {
     none: "–",
     gate: "descent waits: the landing condition fails",
     above: "waits above the pad for the landing condition",
+    look: "no progress: flies to where it sees what its way needs",
     corridor: "descent waits: too far from the pad for this height",
     lag: "descent waits: the vehicle is higher than commanded",
   }[text] ?? `descent: ${text}`;

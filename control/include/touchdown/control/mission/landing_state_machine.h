@@ -29,6 +29,7 @@
 //   landing        go_around       no_contact         committed for over commit_timeout, or the
 //                                                     plan's contact overdue by arrival_timeout, or
 //                                                     postponed for so long
+//   landing        tracking        looks              the planner goes to look, and nothing flown lands
 //   landing        go_around       own_state_lost     own state not usable for over own_timeout
 //   go_around      tracking        climb_complete     at the follow height, pad converged
 //   go_around      tracking        climb_timeout      climbing took too long, pad converged
@@ -124,8 +125,9 @@ enum class Gate {
 };
 std::string_view ToString(Gate gate);
 
-/// Why the descent pauses; kNone while it goes on. kAbove: a planned one waits above the pad for the gate.
-enum class DescentHold { kNone, kGate, kCorridor, kLag, kAbove };
+/// Why the descent pauses; kNone while it goes on. kAbove: a planned one waits above the pad for the gate. kLook: the
+/// vehicle goes to look.
+enum class DescentHold { kNone, kGate, kCorridor, kLag, kAbove, kLook };
 std::string_view ToString(DescentHold hold);
 
 /// What the vehicle shall do.

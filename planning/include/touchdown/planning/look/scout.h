@@ -35,10 +35,13 @@ class Scout {
   explicit Scout(const ReplannerOptions& options);
   ~Scout();
 
+  /// Makes room for maps with this one's window. Otherwise the first question does it, which takes long.
+  void Prepare(const OccupancyMap& map);
+
   /// Where to look from instead of flying to the target of `input`; none: the vehicle makes progress. Call it before
   /// every replanning step, with the step's input.
   /// @param may_look false: the step only counts as time without progress.
-  /// @pre `input` has a pad or goal, and passes the replanner's checks. Allocates.
+  /// @pre `input` has a pad or goal, and passes the replanner's checks. Does not allocate after Prepare, unless very much is struck off.
   std::optional<Viewpoint> Step(const ReplanInput& input, const std::vector<LookCamera>& cameras,
                                 const OccupancyMap& map, bool may_look);
 

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "planning/look/lookout.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "planning/look/sight.h"
+#include "planning/replan/spaces.h"
+#include "planning/test/replanner_fixtures.h"
+#include "touchdown/planning/replan/goal.h"
+
+namespace touchdown::planning {
+namespace {
+
+const Eigen::Vector3d kCalm = Eigen::Vector3d::Zero();
+
+/// Ahead, level, 90 degrees wide and 74 high.
+LookCamera Ahead() {
+  LookCamera camera;
+  camera.R_BC << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  camera.reach = 4.0;
+  return camera;
+}
+
+TEST(Sight, IsThePyramidOfTheImageUpToTheReach) {
+  const Sight sight(Ahead(), {{1.0, 2.0, 3.0}, M_PI / 2}, kCalm);  // looks along y
+  EXPECT_TRUE(sight.Holds({1.0, 4.0, 3.0}));
+  EXPECT_FALSE(sight.Holds({1.0, 0.0, 3.0}));
+  EXPECT_FALSE(sight.Holds({1.0, 6.1, 3.0})) << "beyond the reach";
+  EXPECT_FALSE(sight.Holds({1.0, 2.2, 3.0})) << "too near";
+  const double half_width = std::atan(1.0), half_height = std::atan(0.75);
+  for (const double off : {-0.05, 0.12}) {  // outside, and inside of the margin
+    EXPECT_EQ(sight.Holds({1.0 + 2.0 * std::tan(half_width - off), 4.0, 3.0}), off > 0.0);
+    EXPECT_EQ(sight.Holds({1.0, 4.0, 3.0 - 2.0 * std::tan(half_height - off)}), off > 0.0);
+  }
+}
+
+TEST(Sight, LeansAgainstThePull) {
+  // It is pushed backwards, so it leans ahead and sees lower.
+  const Sight sight(Ahead(), {{0.0, 0.0, 3.0}, 0.0}, {-2.0, 0.0, 0.0});
+  const Eigen::Vector3d low(2.0, 0.0, 3.0 - 2.0 * std::tan(0.75));
+  EXPECT_TRUE(sight.Holds(low));
+  EXPECT_FALSE(Sight(Ahead(), {{0.0, 0.0, 3.0}, 0.0}, kCalm).Holds(low));
+}
+
+TEST(Sight, EndsAtWhatBlocks) {
+  OccupancyMap map{OccupancyMapOptions{}};
+  const Sight sight(Ahead(), {{0.05, 0.05, 1.05}, 0.0}, kCalm);
+  const CellIndex behind(30, 0, 10);
+  EXPECT_TRUE(sight.Reaches(behind, map));
+  map.SetOccupied(map.CentreOf({15, 0, 10}));
+  EXPECT_FALSE(sight.Reaches(behind, map));
+  EXPECT_TRUE(sight.Reaches({15, 0, 10}, map)) << "an obstacle itself is in sight";
+  EXPECT_TRUE(sight.Reaches({15, 3, 10}, map));
+}
+
+class Survey : public ::testing::Test {
+ protected:
+  Survey() : space_(SpaceFor(options_, map_)) { Start(2.05); }
+  void Start(double height) {
+    at_.z() = height;
+    map_.Recentre(at_);
+    vehicle_.p_WB = at_;
+  }
+  /// As high as the window.
+  void Wall(double x, double y_from, double y_to) {
+    for (double y = y_from; y < y_to; y += 0.1) {
+      for (double z = 0.05; z < 6.0; z += 0.1) map_.SetOccupied({x, y, z});
+    }
+  }
+  HullSpace Hull() const { return HullFor(options_, space_, 0.04, nullptr); }
+
+  const ReplannerOptions options_;
+  OccupancyMap map_{OccupancyMapOptions{}};
+  Eigen::Vector3d at_ = {0.05, 0.05, 0.0};
+  FreeSpace space_;
+  estimation::VehicleState vehicle_;
+  Lookout lookout_{2.0};
+};
+
+TEST_F(Survey, ThePotentialIsTheShortestWay) {
+  EXPECT_NEAR(lookout_.Length(space_, at_, at_ + Eigen::Vector3d(5.0, 0.0, 0.0)), 5.0, 0.1);
+  EXPECT_NEAR(lookout_.Length(space_, at_, at_ + Eigen::Vector3d(0.0, 0.0, 1.0)), 2.0, 0.1)
+      << "up costs twice";
+  EXPECT_NEAR(lookout_.Length(space_, at_, at_ + Eigen::Vector3d(60.0, 0.0, 0.0)), 60.0, 0.1)
+      << "out of the window it is straight";
+  Wall(2.5, -13.0, 3.0);
+  EXPECT_GT(lookout_.Length(space_, at_, at_ + Eigen::Vector3d(5.0, 0.0, 0.0)), 7.0);
+  Wall(2.5, 3.0, 13.0);
+  EXPECT_TRUE(std::isinf(lookout_.Length(space_, at_, at_ + Eigen::Vector3d(5.0, 0.0, 0.0))));
+}
+
+TEST_F(Survey, WhatWasSeenIsNotNeeded) {
+  const Eigen::Vector3d goal = at_ + Eigen::Vector3d(4.0, 0.0, 0.0);
+  lookout_.Length(space_, at_, goal);
+  EXPECT_TRUE(lookout_.NoteNeeded(Hull(), at_));
+  map_.MarkRestFree();
+  EXPECT_FALSE(lookout_.NoteNeeded(Hull(), at_));
+}
+
+// The column below was never seen. The vehicle is in a ball of seen space, which the camera's image of its own place
+// does not hold.
+TEST_F(Survey, LooksAtAColumnFromItsSide) {
+  Start(4.05);
+  map_.MarkFree(at_, 2.5);
+  const HullSpace hull = Hull();
+  ASSERT_TRUE(std::isfinite(lookout_.Length(space_, at_, {0.05, 0.05, 1.05})));
+  ASSERT_TRUE(lookout_.NoteNeeded(hull, at_));
+  std::vector<Viewpoint> struck;
+  for (int i = 0; i < 5; ++i) {
+    const Look* look = lookout_.Choose(hull, {Ahead()}, vehicle_, kCalm, struck);
+    ASSERT_TRUE(look);
+    const Eigen::Vector3d off = look->from.p_WB - at_;
+    EXPECT_GT(off.head<2>().norm(), 0.3);
+    EXPECT_LT(off.norm() + hull.radius(), 2.55) << "the hull stays in what was seen";
+    EXPECT_GE(look->way, off.norm() - 1e-9);
+    EXPECT_GT(look->cells.size(), 20U);
+    const Sight sight(Ahead(), look->from, kCalm);
+    for (const CellIndex& cell : look->cells) {
+      EXPECT_TRUE(sight.Holds(map_.CentreOf(cell)));
+      EXPECT_FALSE(map_.IsObservedFree(cell));
+    }
+    for (const Viewpoint& old : struck) {
+      EXPECT_TRUE((old.p_WB - look->from.p_WB).norm() >= 0.4 ||
+                  std::abs(estimation::WrapAngle(old.yaw - look->from.yaw)) >= 0.5);
+    }
+    struck.push_back(look->from);
+  }
+}
+
+TEST_F(Survey, WhereNothingCanBeSeenThereIsNoPlace) {
+  map_.MarkFree(at_, 2.5);
+  lookout_.Length(space_, at_, at_ + Eigen::Vector3d(6.0, 0.0, 0.0));
+  ASSERT_TRUE(lookout_.NoteNeeded(Hull(), at_));
+  LookCamera blind = Ahead();
+  blind.reach = 0.3;
+  EXPECT_FALSE(lookout_.Choose(Hull(), {blind}, vehicle_, kCalm, {}));
+  EXPECT_TRUE(lookout_.Choose(Hull(), {blind, Ahead()}, vehicle_, kCalm, {}));
+}
+
+// Through a gap hardly wider than the hull, places on a coarse lattice are not connected.
+TEST_F(Survey, PlacesBehindAGapOnTheWayAreReached) {
+  Wall(3.05, -13.0, -0.6);
+  Wall(3.05, 0.75, 13.0);
+  for (double x = 0.0; x < 8.0; x += 0.5) map_.MarkFree({x, 0.05, 2.05}, 3.0);
+  const Eigen::Vector3d goal = at_ + Eigen::Vector3d(12.0, 0.0, 0.0);
+  ASSERT_TRUE(std::isfinite(lookout_.Length(space_, at_, goal)));
+  ASSERT_TRUE(lookout_.NoteNeeded(Hull(), at_));
+  const Look* look = lookout_.Choose(Hull(), {Ahead()}, vehicle_, kCalm, {});
+  ASSERT_TRUE(look);
+  EXPECT_GT(look->from.p_WB.x(), 3.5);
+}
+
+}  // namespace
+}  // namespace touchdown::planning

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "touchdown/planning/look/scout.h"
+
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include <gtest/gtest.h>
+
+#include "planning/test/replanner_fixtures.h"
+#include "touchdown/planning/replan/goal.h"
+
+namespace touchdown::planning {
+namespace {
+
+/// Asks a scout ten times a second about a vehicle that was moved by hand.
+class Scouted : public ::testing::Test {
+ protected:
+  Scouted() {
+    map_.Recentre(p_);
+    map_.MarkFree(p_, 2.5);
+    LookCamera camera;
+    camera.R_BC << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+    camera.reach = 4.0;
+    cameras_ = {camera};
+  }
+
+  std::optional<Viewpoint> Step(const Eigen::Vector3d& v = Eigen::Vector3d::Zero(), int images = 1,
+                                bool may_look = true) {
+    t_ += 0.1;
+    p_ += 0.1 * v;
+    cameras_[0].images += images;
+    ReplanInput input = Input(p_, *pad_, t_);
+    input.vehicle.q_WB = Eigen::AngleAxisd(yaw_, Eigen::Vector3d::UnitZ());
+    input.endpoint.height = input.endpoint.height_floor = 0.0;
+    return scout_.Step(input, cameras_, map_, may_look);
+  }
+  /// The time at which the standing vehicle first looks; infinite: not within 10 s.
+  double FirstLook(int images_every = 1, bool may_look = true) {
+    for (int i = 0; i < 100; ++i) {
+      look_ = Step(Eigen::Vector3d::Zero(), i % images_every == 0, may_look);
+      if (look_) return t_;
+    }
+    return std::numeric_limits<double>::infinity();
+  }
+  void GoThere() {
+    p_ = look_->p_WB;
+    yaw_ = look_->yaw;
+  }
+
+  double t_ = 0.0, yaw_ = 0.0;
+  Eigen::Vector3d p_ = {0.05, 0.05, 2.05};
+  OccupancyMap map_{OccupancyMapOptions{}};
+  std::unique_ptr<estimation::PadPrediction> pad_ =
+      std::make_unique<GoalAt>(Eigen::Vector3d(8.0, 0.05, 2.05));
+  std::vector<LookCamera> cameras_;
+  Scout scout_{Options(ArrivalMode::kFixed)};
+  std::optional<Viewpoint> look_;
+};
+
+TEST_F(Scouted, WhoStandsBeforeUnseenSpaceLooksAfterAWhile) {
+  const double t = FirstLook();
+  EXPECT_GE(t, 2.5);
+  EXPECT_LE(t, 3.5);
+  EXPECT_TRUE(Step()) << "and goes on doing so";
+}
+
+TEST_F(Scouted, WithRareImagesLater) {
+  const double t = FirstLook(10);  // one a second
+  EXPECT_GE(t, 5.0);
+  EXPECT_LE(t, 8.0);
+}
+
+TEST_F(Scouted, NeverWithoutACameraOrWhereItMayNot) {
+  EXPECT_TRUE(std::isinf(FirstLook(1, false)));
+  cameras_[0].images = 0;
+  const Eigen::Vector3d p = p_;
+  for (int i = 0; i < 100; ++i) {
+    t_ += 0.1;
+    EXPECT_FALSE(scout_.Step(Input(p, *pad_, t_), {}, map_, true));
+  }
+}
+
+TEST_F(Scouted, NotWhereAllThatIsNeededWasSeen) {
+  map_.MarkRestFree();
+  EXPECT_TRUE(std::isinf(FirstLook()));
+}
+
+TEST_F(Scouted, NotAtTheGoal) {
+  p_ = pad_->At(0.0).p_WP + Eigen::Vector3d(0.2, 0.0, 0.0);
+  EXPECT_TRUE(std::isinf(FirstLook()));
+}
+
+TEST_F(Scouted, NotWhileItComesNearer) {
+  for (int i = 0; i < 100; ++i) EXPECT_FALSE(Step({0.2, 0.0, 0.0})) << t_;
+}
+
+// To and fro is no progress: rest is not waited for.
+TEST_F(Scouted, ToAndFroIsNoProgress) {
+  bool looks = false;
+  for (int i = 0; i < 60 && !looks; ++i) {
+    looks = Step({i / 8 % 2 == 0 ? 0.8 : -0.8, 0.0, 0.0}).has_value();
+  }
+  EXPECT_TRUE(looks);
+}
+
+TEST_F(Scouted, WhoFollowsAGoalThatDrivesAheadMakesProgress) {
+  pad_ = std::make_unique<MovingGoal>([](const Taylor& t) {
+    return MovingGoal::Position{3.0 + 0.6 * t, 0.05 + 0.0 * t, 2.05 + 0.0 * t};
+  });
+  for (int i = 0; i < 100; ++i) EXPECT_FALSE(Step({0.6, 0.0, 0.0})) << t_;
+}
+
+TEST_F(Scouted, EndsWhenTheCellsWereSeen) {
+  FirstLook();
+  ASSERT_TRUE(look_);
+  map_.MarkRestFree();
+  EXPECT_FALSE(Step());
+}
+
+TEST_F(Scouted, APlaceIsStruckAfterThreeImagesInVain) {
+  FirstLook();
+  ASSERT_TRUE(look_);
+  GoThere();
+  int images = 0;
+  while (images < 20 && Step(Eigen::Vector3d::Zero(), 1)) ++images;
+  EXPECT_EQ(images, 3);
+  const Viewpoint first = *look_;
+  FirstLook();
+  ASSERT_TRUE(look_);
+  EXPECT_TRUE((look_->p_WB - first.p_WB).norm() >= 0.4 ||
+              std::abs(estimation::WrapAngle(look_->yaw - first.yaw)) >= 0.5);
+}
+
+TEST_F(Scouted, APlaceThatIsNotReachedIsStruck) {
+  FirstLook();
+  ASSERT_TRUE(look_);
+  p_ = look_->p_WB + Eigen::Vector3d(-1.0, 0.0, 0.0);
+  Step();
+  const double stands_since = t_;
+  while (t_ < stands_since + 10.0 && Step()) {
+  }
+  EXPECT_NEAR(t_ - stands_since, 2.6, 0.3);
+}
+
+// A turn on the spot takes longer than the patience.
+TEST_F(Scouted, WhoTurnsIsNotGivenUp) {
+  FirstLook();
+  ASSERT_TRUE(look_);
+  p_ = look_->p_WB;
+  yaw_ = look_->yaw + M_PI;
+  for (int i = 0; i < 40; ++i) EXPECT_TRUE(Step()) << i;
+}
+
+TEST_F(Scouted, ALookEndsWhereItMayNot) {
+  FirstLook();
+  ASSERT_TRUE(look_);
+  EXPECT_FALSE(Step(Eigen::Vector3d::Zero(), 1, false));
+  EXPECT_FALSE(Step());
+}
+
+}  // namespace
+}  // namespace touchdown::planning
