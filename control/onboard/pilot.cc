@@ -224,7 +224,8 @@ const planning::ReplanResult* Pilot::Replan(const estimation::VehicleState& vehi
   has_plan_ = last_planned_ || kept;
   if (last_planned_) planned_t_ = vehicle.t;
   if (!kept && !Levelled(vehicle.t)) {
-    const bool touches = last_planned_ && to_contact && input.endpoint.touches();
+    const bool touches =
+        last_planned_ && to_contact && input.endpoint.touches() && result.ends_in_contact;
     plan_end_t_ = touches ? result.curve.t_end() : std::numeric_limits<double>::infinity();
   }
   return &result;

@@ -64,6 +64,7 @@ planning::ReplannerOptions PlannerOptions(const Scenario& scenario,
   options.max_guides = scenario.planning.guides;
   options.segment_length = scenario.planning.segment_length;
   options.max_work = scenario.planning.max_work;
+  options.max_duration = scenario.planning.max_duration;
   options.warm_start = scenario.planning.warm_start;
   options.gap = scenario.solver.gap;
   // With a measured latency, a plan with the longest latency may follow one with the shortest.

@@ -93,6 +93,10 @@ void AddPlanningKeys(KeyList& keys) {
             "most ways around the first obstacle that a step of the landing planner tries; "
             "the cheapest plan wins",
             TOUCHDOWN_AT(planning.guides)));
+  keys.push_back(Number<Scenario>("planning.max_duration", In(5, 120, "s"),
+                                  "planner landing: longest plan; towards an end that is farther a "
+                                  "plan ends on the way",
+                                  TOUCHDOWN_AT(planning.max_duration)));
   keys.push_back(
       Whole("planning.max_work", 1000, 1000000,
             "planner landing: what a step may do at most, in counted units, of which 10,000 take "

@@ -109,7 +109,11 @@ TEST(HostileDraw, ConditionsAreInTheRangeThatTheyAreSaidToBeIn) {
     EXPECT_GE(s.limits.acceleration, 0.5);
     EXPECT_LE(s.limits.acceleration, 6.87);
     EXPECT_EQ(s.stand_limit, 15.0);
-    EXPECT_NEAR(s.timeout, std::min(600.0, 60.0 / (1.0 - s.depth.drop)), 1.0);
+    if (flight.family == "far") {
+      EXPECT_GT(s.timeout, std::min(599.0, 60.0 / (1.0 - s.depth.drop)));
+    } else {
+      EXPECT_NEAR(s.timeout, std::min(600.0, 60.0 / (1.0 - s.depth.drop)), 1.0);
+    }
   }
 }
 
@@ -244,7 +248,7 @@ TEST(HostileWayTest, ARoofMayBeTooLowAndAPadTooFar) {
 
 TEST(HostileWorld, TurningItKeepsWhatBelongsTogether) {
   for (int i = 0; i < 16; ++i) {
-    Scenario s = Room(1.4);
+    Scenario s = Room(1.8);
     s.pad.motion = "figure_eight";
     s.pad.turn_rate = 0.3;
     const HostileWay before = FindWay(s, StandardRegistries(), 45.0);

@@ -36,6 +36,7 @@ constexpr int kUsualPaths = 32;       // room for those of one step
 constexpr int kUsualPathPoints = 512;
 constexpr double kClockRounding = 1e-6;  // [s]
 constexpr double kRestartAfter = 2.0;    // a longer pause between calls resets the memory [s]
+constexpr double kOnTheWay = 0.5;  // of the longest plan, where the end is too far
 constexpr double kLowestWait = 0.6;      // of the body over a deck below a roof [m]
 constexpr double kLookAhead = 2.0;       // of the cells that the next stops need [s]
 
@@ -126,7 +127,7 @@ class Replanner::Impl {
   FreeSpace SpaceOverPad(const ReplanInput& input, const SplineState& start, double t_end,
                          const OccupancyMap& map) const;
   void Begin(const ReplanInput& input);
-  void SetEnd(const ReplanInput& input);
+  void SetEnd(const ReplanInput& input, const SplineState& start);
   const char* WrongInState(const ReplanInput& input) const;
   const ReplanResult& RefuseState(const ReplanInput& input, const char* wrong);
   void NoteAsked(double t_start);
@@ -151,7 +152,7 @@ class Replanner::Impl {
   double reaction_ = 0.0;          // after which a stop of this step begins [s]
   std::optional<double> asked_t_;  // the last answer took over then [s]
   bool stands_ = false;            // something is committed
-  std::optional<GoalAt> look_from_;                 // where a plan ends instead of at the pad
+  std::optional<GoalAt> look_from_, on_the_way_;                 // where a plan ends instead of at the pad
   const estimation::PadPrediction* pad_ = nullptr;  // where a plan ends: this and ...
   EndpointTarget end_;                              // ... this
   ReplanResult result_;
@@ -236,6 +237,7 @@ void Replanner::Impl::Begin(const ReplanInput& input) {
   limits_ = LimitsUnder(options_.limits, options_.problem.vehicle, input.pull_W);
   fallback_.SetLimits(limits_);
   look_from_.reset();
+  on_the_way_.reset();
   if (log_) log_->attempts.clear();
   result_.times = {};
   result_.guide_paths.Clear();
@@ -254,13 +256,23 @@ void Replanner::Impl::Begin(const ReplanInput& input) {
   for (solvers::TermCost& term : result_.solver.cost_by_term) term.cost = 0.0;
 }
 
-void Replanner::Impl::SetEnd(const ReplanInput& input) {
+/// Where plans of this step end. If that is too far for one, they end on the straight way there.
+void Replanner::Impl::SetEnd(const ReplanInput& input, const SplineState& start) {
   pad_ = input.pad;
   end_ = input.endpoint;
-  if (!input.look_from_W) return;
-  look_from_.emplace(*input.look_from_W);
-  pad_ = &*look_from_;
+  if (input.look_from_W) {
+    look_from_.emplace(*input.look_from_W);
+    pad_ = &*look_from_;
+    end_ = AtRest();
+  }
+  const double t0 = input.t_start;
+  const double guess = GuessDuration(start, t0, *pad_, end_, limits_, 1.0);
+  if (guess <= options_.max_duration || !std::isfinite(guess)) return;
+  const Eigen::Vector3d end = EndStateAt(*pad_, end_, t0).state.p;
+  on_the_way_.emplace(start.p + kOnTheWay * options_.max_duration / guess * (end - start.p));
+  pad_ = &*on_the_way_;
   end_ = AtRest();
+  result_.ends_in_contact = false;
 }
 
 /// Without a usable state of the vehicle nothing can be decided: the committed pair goes on, to its stop.
@@ -316,7 +328,7 @@ const ReplanResult& Replanner::Impl::Replan(const ReplanInput& input, const Occu
   const char* wrong = WrongInTarget(input, options_.max_duration);
   const bool target_valid = wrong == nullptr;
   if (wrong) result_.detail = wrong;
-  if (target_valid) SetEnd(input);
+  if (target_valid) SetEnd(input, start);
   result_.reason = target_valid ? Plan(input, start, map) : ReplanReason::kInvalidInput;
   // Where cells are to be seen first, no term decides.
   if (result_.reason == ReplanReason::kUnobserved) result_.forbidden_by = {};
@@ -423,11 +435,13 @@ Attempt Replanner::Impl::FirstAttempt(const ReplanInput& input, const SplineStat
   facts->min_duration = options_.min_duration;
   facts->max_duration = options_.max_duration;
   // An arrival once promised is kept: a new guess at every step would postpone it for ever. An arrival that is soon
-  // on the straight way need not be on a long way around.
+  // on the straight way need not be on a long way around. An end
+  // on the way goes on ahead.
   const double left = next_.curve.t_end() - input.t_start;
   const bool on_plan = planned_before_ && !result_.from_odometry;
-  const bool promised = on_plan && guess(DetourOf(next_.curve, input.t_start)) >
-                                       options_.constants.retime_below * left;
+  const bool promised =
+      on_plan && !on_the_way_ &&
+      guess(DetourOf(next_.curve, input.t_start)) > options_.constants.retime_below * left;
   // A vehicle that follows a pad needs no shorter plans than usual. Only the last ones before a
   // contact are shorter.
   const double shortest = end_.touches() ? options_.min_contact_duration : options_.min_duration;

@@ -308,6 +308,18 @@ TEST(Replanner, NamesWhyThereIsNoPlan) {
 
   EXPECT_EQ(ask(free, Input(start, racing, 0.0)).reason, ReplanReason::kPadUnreachable);
 
+  // Too far for one plan: it ends on the way, and not in contact.
+  const ArcPad distant({150.0, 0.0, 0.3}, 0.0, 0.0, 0.0);
+  ReplanInput to_contact = Input(start, distant, 0.0);
+  to_contact.endpoint.arrival_sink = 0.3;
+  const ReplanResult on_the_way = ask(free, to_contact);
+  EXPECT_EQ(on_the_way.status, ReplanStatus::kPlanned);
+  EXPECT_FALSE(on_the_way.ends_in_contact);
+  const FlatState end = on_the_way.curve.EvaluateOnward(on_the_way.curve.t_end());
+  EXPECT_LT(end.v_WB.norm(), 1e-6);
+  EXPECT_GT(end.p_WB.x(), start.x() + 20.0);
+  EXPECT_LT(end.p_WB.x(), 100.0);
+
   // A pad that stands inside a pillar.
   OccupancyMap on_pad = ObservedMap();
   AddPillar({5.0, 0.0}, &on_pad);

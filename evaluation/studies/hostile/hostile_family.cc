@@ -53,6 +53,25 @@ const std::vector<HostileFamily>& HostileFamilies() {
        "1.4 to 2.6 m above the deck, 2 to 4 m wide, over 40 to 100 % of the lane; posts 0.15 to "
        "0.4 m",
        MakeRoof},
+      {"below", "the pad stands below the start, posts around it",
+       "1.5 to 5 m above the deck, 0 to 0.8 m aside; 0 to 4 posts 2.2 to 5 m away", MakeBelow},
+      {"clearing", "the pad stands in a ring of boxes, with posts before it",
+       "ring of 5 to 10, 1.6 to 3 m inside; 0 to 5 posts", MakeClearing},
+      {"niche", "the pad stands between three walls, open to the start, to a side or away from it",
+       "walls 1.3 to 2.2 m from its centre, 1.5 to 5 m high", MakeNiche},
+      {"garage", "the same with a roof", "1.5 to 2.4 m above the deck; walls 1.5 to 2.5 m away",
+       MakeGarage},
+      {"limbo", "a corridor with walls to fly over and under in turn",
+       "2.6 to 4 m wide; 2 to 4 walls 2.4 to 3.5 m apart, 1.4 to 2.3 m high, or 1.4 to 1.9 m above "
+       "the ground",
+       MakeLimbo},
+      {"wide_wall", "a wall wider than the map's window", "16 to 80 m wide, 2 to 6 m high",
+       MakeWideWall},
+      {"far", "a pad that stands far away, houses before it", "40 to 90 m; 0 to 7 houses", MakeFar},
+      {"two_floors", "the start is on a floor above the pad, which stands below it",
+       "floor 2 to 3 m above the deck, 5 to 8 m wide; 0 to 2 walls below", MakeTwoFloors},
+      {"skylight", "the pad stands in a room with a hole in its roof",
+       "room 3.6 to 6 m wide, roof 1.6 to 2.4 m above the deck, hole 1.6 to 2.6 m", MakeSkylight},
   };
   return families;
 }

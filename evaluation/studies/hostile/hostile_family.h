@@ -33,7 +33,7 @@ std::vector<std::string> HostileFamilyNames();
 /// @throws BadInput
 const HostileFamily& HostileFamilyNamed(const std::string& name);
 
-// The generators, by file: hostile_pockets.cc, hostile_passages.cc, hostile_heights.cc, hostile_open.cc.
+// The generators, by file: hostile_pockets.cc, hostile_passages.cc, hostile_heights.cc, hostile_open.cc, hostile_standing.cc.
 void MakeDeadEnd(const WorldRequest& request, sim::RandomStream& draw, Scenario* scenario);
 void MakeFacingWall(const WorldRequest& request, sim::RandomStream& draw, Scenario* scenario);
 void MakeBlindCorner(const WorldRequest& request, sim::RandomStream& draw, Scenario* scenario);
@@ -46,5 +46,14 @@ void MakeLowWall(const WorldRequest& request, sim::RandomStream& draw, Scenario*
 void MakePoles(const WorldRequest& request, sim::RandomStream& draw, Scenario* scenario);
 void MakeNearStart(const WorldRequest& request, sim::RandomStream& draw, Scenario* scenario);
 void MakeWideField(const WorldRequest& request, sim::RandomStream& draw, Scenario* scenario);
+void MakeBelow(const WorldRequest& request, sim::RandomStream& draw, Scenario* scenario);
+void MakeClearing(const WorldRequest& request, sim::RandomStream& draw, Scenario* scenario);
+void MakeNiche(const WorldRequest& request, sim::RandomStream& draw, Scenario* scenario);
+void MakeGarage(const WorldRequest& request, sim::RandomStream& draw, Scenario* scenario);
+void MakeLimbo(const WorldRequest& request, sim::RandomStream& draw, Scenario* scenario);
+void MakeWideWall(const WorldRequest& request, sim::RandomStream& draw, Scenario* scenario);
+void MakeFar(const WorldRequest& request, sim::RandomStream& draw, Scenario* scenario);
+void MakeTwoFloors(const WorldRequest& request, sim::RandomStream& draw, Scenario* scenario);
+void MakeSkylight(const WorldRequest& request, sim::RandomStream& draw, Scenario* scenario);
 
 }  // namespace touchdown::evaluation

@@ -142,7 +142,9 @@ HostileFlight DrawHostileFlight(const HostileOptions& options, int index,
               &scenario);
     flight.trial.scenario = ParseScenario(DumpScenario(scenario), scenario.name,
                                           fmt::format("flight {}", index), {}, registries);
-    flight.way = FindWay(flight.trial.scenario, registries, kCatchTime);
+    const Scenario& flown = flight.trial.scenario;
+    const bool stands = flown.pad.motion == "static";
+    flight.way = FindWay(flown, registries, stands ? flown.timeout : kCatchTime);
   } catch (const std::exception& error) {
     if (options.set.empty()) throw;
     throw BadInput(fmt::format("--set {} cannot be used with what is drawn for flight {} ({}): {}",

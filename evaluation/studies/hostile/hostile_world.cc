@@ -6,6 +6,9 @@
 #include <limits>
 #include <vector>
 
+#include <Eigen/Geometry>
+
+#include "estimation/base/degrees.h"
 #include "evaluation/scenario/scenario_world.h"
 #include "sim/obstacles/obstacle_field.h"
 
@@ -50,20 +53,18 @@ void CircleLane(double x, double radius, sim::RandomStream& draw, Scenario* s) {
   s->pad.phase = DrawIn(draw, {0.0, 2.0 * kPi * radius});
 }
 
-// The motion of a world: mirrored at y = 0, turned to the left by quarters, shifted.
+// The motion of a world: mirrored at y = 0, turned to the left, shifted.
 struct Move {
   bool mirrored = false;
-  int quarters = 0;
+  double turn_deg = 0.0;
   Eigen::Vector2d shift = Eigen::Vector2d::Zero();
 
   Eigen::Vector2d Point(Eigen::Vector2d p) const {
     if (mirrored) p.y() = -p.y();
-    for (int i = 0; i < quarters; ++i) p = Eigen::Vector2d(-p.y(), p.x());
-    return p + shift;
+    return Eigen::Rotation2Dd(turn_deg * estimation::kRadPerDeg) * p + shift;
   }
   double Heading(double deg) const {
-    const double turned = (mirrored ? -deg : deg) + 90.0 * quarters;
-    return std::remainder(turned, 360.0);
+    return std::remainder((mirrored ? -deg : deg) + turn_deg, 360.0);
   }
 };
 
@@ -131,11 +132,11 @@ void StraightLane(double x, double length, sim::RandomStream& draw, Scenario* sc
 void TurnWorld(sim::RandomStream& draw, Scenario* scenario) {
   Move move;
   move.mirrored = DrawChance(draw, 0.5);
-  move.quarters = DrawOneOf(draw, 4);
+  move.turn_deg = DrawIn(draw, {0.0, 360.0});
   move.shift << DrawIn(draw, {0.0, kMapCell}), DrawIn(draw, {0.0, kMapCell});
   for (BoxObstacle& box : scenario->boxes) {
     box.centre = move.Point(box.centre);
-    if (move.quarters % 2 == 1) std::swap(box.size.x(), box.size.y());
+    box.turn_deg.z() = move.Heading(box.turn_deg.z());
   }
   for (CylinderObstacle& post : scenario->cylinders) post.centre = move.Point(post.centre);
   Scenario::Pad& pad = scenario->pad;

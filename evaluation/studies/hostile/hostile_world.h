@@ -47,7 +47,7 @@ void LaneBeyond(double x, sim::RandomStream& draw, Scenario* scenario);
 /// about a quarter of it.
 void StraightLane(double x, double length, sim::RandomStream& draw, Scenario* scenario);
 
-/// Mirrors the world, turns it by quarters and shifts it by less than a cell of the map.
+/// Mirrors the world, turns it by any angle and shifts it by less than a cell of the map.
 void TurnWorld(sim::RandomStream& draw, Scenario* scenario);
 
 /// Distance from the vehicle's start to the nearest obstacle [m]; infinite without any.

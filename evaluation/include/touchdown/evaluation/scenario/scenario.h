@@ -241,6 +241,7 @@ struct Scenario {
     double ceiling = 10.0;         ///< the body's origin stays below this [m]
     double segment_length = 0.75;  ///< of a plan's segment at full speed, at most [m]
     int guides = 2;                ///< most ways around the first obstacle that a step tries
+    double max_duration = 30.0;    ///< of a plan; ends that are later are approached in parts [s]
     int max_work = 10000;          ///< of a step, in units of planning/search/work_budget.h
     EndpointVelocityKind endpoint_velocity = EndpointVelocityKind::kPad;
     bool warm_start = true;  ///< solves begin at the committed plan
