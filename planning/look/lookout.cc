@@ -185,6 +185,21 @@ bool Lookout::Flood(const HullSpace& hull, const Place& from, int stride) {
   return true;
 }
 
+const Look* Lookout::Highest(const HullSpace& hull, const Eigen::Vector3d& from,
+                             const Eigen::Vector3d& goal) {
+  begin_ = {from, 0.0};
+  places_.clear();
+  Flood(hull, begin_);
+  if (places_.empty()) return nullptr;
+  const auto lower = [](const Place& a, const Place& b) { return a.p_W.z() < b.p_W.z(); };
+  const Place& highest = *std::max_element(places_.begin(), places_.end(), lower);
+  const Eigen::Vector3d to = goal - highest.p_W;
+  best_.from = {highest.p_W, std::atan2(to.y(), to.x())};
+  best_.way = highest.way;
+  best_.cells.clear();
+  return &best_;
+}
+
 void Lookout::FindCandidates(const HullSpace& hull, const std::vector<LookCamera>& cameras,
                              const estimation::VehicleState& vehicle, const Eigen::Vector3d& pull_W,
                              const std::vector<Viewpoint>& struck) {

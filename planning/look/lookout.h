@@ -42,6 +42,10 @@ class Lookout {
                      const estimation::VehicleState& vehicle, const Eigen::Vector3d& pull_W,
                      const std::vector<Viewpoint>& struck);
 
+  /// The highest place to which cells lead that were seen free, turned to the goal. As Choose.
+  const Look* Highest(const HullSpace& hull, const Eigen::Vector3d& from,
+                      const Eigen::Vector3d& goal);
+
  private:
   struct Needed {
     CellIndex cell;

@@ -21,6 +21,8 @@ constexpr double kAsksEvery = 0.5;  // [s]
 constexpr double kGap = 1.0;        // without a step: what was before does not count [s]
 constexpr double kAtGoal = 0.3;     // [m]
 
+constexpr double kDetour = 15.0;  // flown without a new best: then over it [m]
+constexpr double kHigher = 0.5;   // is a climb [m]
 constexpr std::size_t kUsualSteps = 1000, kUsualStruck = 100;
 
 constexpr double kNear = 0.3, kTurnedTo = 0.2;   // of a viewpoint [m], [rad]
@@ -45,6 +47,7 @@ class Scout::Impl {
     if (cameras.empty()) return std::nullopt;
     Was now = {input.t_now, 0, input.vehicle.p_WB, Goal(input)};
     for (const LookCamera& camera : cameras) now.images += camera.images;
+    if (!was_.empty()) detour_ += (now.p_WB - was_.back().p_WB).norm();
     if (!was_.empty() && now.t > was_.back().t + kGap) Forget();
     was_.push_back(now);
     if (look_ && !(may_look && StillLooks(input, map))) {
@@ -108,11 +111,38 @@ class Scout::Impl {
     LayPadStrip(*input.pad, input.endpoint, now.p_WB, input.t_start,
                 input.t_start + options_.min_duration, options_.pad_radius, options_.contact_height,
                 &space);
-    if (MadeProgress(space)) return;
     const HullSpace hull = HullFor(options_, space, input.margins.Sum(), DeckOf(input));
+    const bool progress = MadeProgress(space);
+    if (ShallClimb(length_)) return Climb(hull);
+    if (progress) return;
     if (!lookout_.NoteNeeded(hull, now.p_WB)) return;
     look_ = lookout_.Choose(hull, cameras, input.vehicle, input.pull_W, struck_);
     if (look_ == nullptr) struck_.clear();  // all were tried: again
+  }
+
+  /// Around an obstacle that has no end one way is as good as any: after as long a way as that, over it. A goal that
+  /// moves has no such best.
+  bool ShallClimb(double length) {
+    const Was& now = was_.back();
+    if (!std::isfinite(length)) return !up_;
+    if (length < best_ - kNearer || (now.goal_W - best_goal_W_).norm() > kNearer) {
+      best_ = length;
+      best_goal_W_ = now.goal_W;
+      detour_ = 0.0;
+      most_detour_ = kDetour;
+      up_ = false;
+    }
+    return detour_ > most_detour_;
+  }
+
+  void Climb(const HullSpace& hull) {
+    const Was& now = was_.back();
+    look_ = lookout_.Highest(hull, now.p_WB, now.goal_W);
+    if (look_ != nullptr && look_->from.p_WB.z() > now.p_WB.z() + kHigher) return;
+    look_ = nullptr;  // from here on the next way around
+    up_ = true;
+    detour_ = 0.0;
+    most_detour_ *= 2.0;
   }
 
   /// The vehicle is nearer to where the goal was then, or to where it is now. Or no way is known at all.
@@ -120,11 +150,12 @@ class Scout::Impl {
     const Was &then = was_.front(), &now = was_.back();
     const auto nearer = [&](const Eigen::Vector3d& goal) {
       const double before = lookout_.Length(space, then.p_WB, goal);
-      const double length = lookout_.Length(space, now.p_WB, goal);
-      return !std::isfinite(length) || length < before - kNearer;
+      length_ = lookout_.Length(space, now.p_WB, goal);
+      return !std::isfinite(length_) || length_ < before - kNearer;
     };
     const bool goal_moved = (now.goal_W - then.goal_W).norm() > kNearer;
-    return (goal_moved && nearer(then.goal_W)) || nearer(now.goal_W);
+    const bool to_then = goal_moved && nearer(then.goal_W);
+    return nearer(now.goal_W) || to_then;
   }
 
   /// Until the cells were seen, or were looked for in vain, or the place is not reached.
@@ -133,7 +164,7 @@ class Scout::Impl {
         look_->cells.begin(), look_->cells.end(),
         [&](const auto& cell) { return !map.IsObservedFree(cell) && !map.IsOccupied(cell); });
     const auto cells = static_cast<double>(look_->cells.size());
-    if (static_cast<double>(unseen) <= kEnough * cells) return false;
+    if (cells > 0.0 && static_cast<double>(unseen) <= kEnough * cells) return false;
     const Was &then = was_.front(), &now = was_.back();
     const double turn = estimation::Yaw(input.vehicle.q_WB) - look_->from.yaw;
     const bool near = (now.p_WB - look_->from.p_WB).norm() < kNear;
@@ -152,8 +183,14 @@ class Scout::Impl {
   Lookout lookout_;
   std::vector<Was> was_;  // of the last steps; the first is as old as a question takes
   double asked_t_ = -std::numeric_limits<double>::infinity();  // for a place to look from, last
-  const Look* look_ = nullptr;                                 // nullptr: it flies to the goal
-  double until_ = 0.0;                                         // it is to be over [s]
+  double length_ = 0.0;  // of the shortest way, when it was last asked for
+  double best_ = std::numeric_limits<double>::infinity();  // the least one so far, ...
+  Eigen::Vector3d best_goal_W_ = Eigen::Vector3d::Zero();  // ... to there,
+  double detour_ = 0.0;                                    // and what was flown since [m]
+  double most_detour_ = kDetour;
+  bool up_ = false;                  // as high as it could climb, for that best
+  const Look* look_ = nullptr;       // nullptr: it flies to the goal
+  double until_ = 0.0;               // it is to be over [s]
   std::optional<int> images_there_;  // used before the first one from there
   std::vector<Viewpoint> struck_;    // looked from in vain
 };

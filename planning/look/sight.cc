@@ -36,9 +36,8 @@ Sight::Sight(const LookCamera& camera, const Viewpoint& from, const Eigen::Vecto
 }
 
 bool Sight::Reaches(const CellIndex& cell, const OccupancyMap& map) const {
-  return TraverseCells(p_WC_, map.CentreOf(cell), map.resolution(), [&](const CellIndex& at) {
-    return at == cell || !map.IsOccupied(at);
-  });
+  return TraverseCells(p_WC_, map.CentreOf(cell), map.resolution(),
+                       [&](const CellIndex& at) { return at == cell || !map.IsOccupied(at); });
 }
 
 }  // namespace touchdown::planning

@@ -36,7 +36,7 @@ constexpr int kUsualPaths = 32;       // room for those of one step
 constexpr int kUsualPathPoints = 512;
 constexpr double kClockRounding = 1e-6;  // [s]
 constexpr double kRestartAfter = 2.0;    // a longer pause between calls resets the memory [s]
-constexpr double kOnTheWay = 0.5;  // of the longest plan, where the end is too far
+constexpr double kOnTheWay = 0.5;        // of the longest plan, where the end is too far
 constexpr double kLowestWait = 0.6;      // of the body over a deck below a roof [m]
 constexpr double kLookAhead = 2.0;       // of the cells that the next stops need [s]
 
@@ -152,7 +152,7 @@ class Replanner::Impl {
   double reaction_ = 0.0;          // after which a stop of this step begins [s]
   std::optional<double> asked_t_;  // the last answer took over then [s]
   bool stands_ = false;            // something is committed
-  std::optional<GoalAt> look_from_, on_the_way_;                 // where a plan ends instead of at the pad
+  std::optional<GoalAt> look_from_, on_the_way_;    // where a plan ends instead of at the pad
   const estimation::PadPrediction* pad_ = nullptr;  // where a plan ends: this and ...
   EndpointTarget end_;                              // ... this
   ReplanResult result_;

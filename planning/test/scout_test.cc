@@ -143,6 +143,19 @@ TEST_F(Scouted, APlaceThatIsNotReachedIsStruck) {
   EXPECT_NEAR(t_ - stands_since, 2.6, 0.3);
 }
 
+// To and fro before a wall that has no end in sight.
+TEST_F(Scouted, AfterALongDetourItClimbs) {
+  map_.MarkRestFree();
+  for (double y = -13.0; y < 13.0; y += 0.1) {
+    for (double z = 0.05; z < 5.3; z += 0.1) map_.SetOccupied({3.05, y, z});
+  }
+  int step = 0;
+  while (step < 400 && !look_) look_ = Step({0.0, step++ / 30 % 2 == 0 ? 1.0 : -1.0, 0.0});
+  ASSERT_TRUE(look_);
+  EXPECT_GT(look_->p_WB.z(), p_.z() + 0.5);
+  EXPECT_NEAR(look_->yaw, 0.0, 1.0) << "it faces the wall";
+}
+
 // A turn on the spot takes longer than the patience.
 TEST_F(Scouted, WhoTurnsIsNotGivenUp) {
   FirstLook();

@@ -8,9 +8,9 @@
 namespace touchdown::evaluation {
 namespace {
 
-constexpr double kAheadOfPad = 1.3;  // least distance of walls from a pad's centre [m]
-constexpr double kLongestFlight = 600.0;   // that a scenario may last [s]
-constexpr double kSlowly = 0.5;      // more time for a far pad [m/s]
+constexpr double kAheadOfPad = 1.3;       // least distance of walls from a pad's centre [m]
+constexpr double kLongestFlight = 600.0;  // that a scenario may last [s]
+constexpr double kSlowly = 0.5;           // more time for a far pad [m/s]
 
 void StandAt(double x, double y, sim::RandomStream& draw, Scenario* s) {
   s->pad.motion = "static";
@@ -159,7 +159,8 @@ void MakeSkylight(const WorldRequest& /*request*/, sim::RandomStream& draw, Scen
     AddBox({x - half, x + half}, span, 0.0, top, s);
   }
   const double hole = 0.5 * DrawIn(draw, {1.6, 2.6});
-  const double hx = x + DrawIn(draw, {-1.0, 1.0}) * (half - hole), hy = DrawIn(draw, {-1.0, 1.0}) * (half - hole);
+  const double hx = x + DrawIn(draw, {-1.0, 1.0}) * (half - hole),
+               hy = DrawIn(draw, {-1.0, 1.0}) * (half - hole);
   AddBox({x - half, hx - hole}, {-half, half}, base, top, s);
   AddBox({hx + hole, x + half}, {-half, half}, base, top, s);
   AddBox({hx - hole, hx + hole}, {-half, hy - hole}, base, top, s);
