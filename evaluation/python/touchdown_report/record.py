@@ -6,7 +6,7 @@ import numpy as np
 
 from touchdown_report import database
 
-SUPPORTED_VERSION = "19"
+SUPPORTED_VERSION = "20"
 
 
 class RecordError(Exception):
