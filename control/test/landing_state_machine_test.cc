@@ -454,7 +454,7 @@ TEST(LandingStateMachine, WhoGoesToLookInterruptsTheDescent) {
   mission.Run(2.0, [](MissionInputs& in) { in.looks = true; });
   EXPECT_EQ(mission.outputs.mode, MissionMode::kTracking) << "also near and slow over the pad";
   EXPECT_EQ(mission.outputs.descent_hold, DescentHold::kLook);
-  mission.Tick();
+  mission.Tick([](MissionInputs& in) { in.looks = false; });
   EXPECT_EQ(mission.outputs.mode, MissionMode::kLanding);
   EXPECT_NE(mission.outputs.descent_hold, DescentHold::kLook);
 }

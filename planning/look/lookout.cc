@@ -5,10 +5,6 @@
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <memory_resource>
-#include <queue>
-#include <unordered_map>
-#include <unordered_set>
 
 #include "planning/look/sight.h"
 #include "touchdown/planning/certify/stored_stop.h"
@@ -20,12 +16,11 @@ constexpr int kMostSpans = 60000;       // that a search expands
 constexpr double kBetweenBalls = 0.15;  // along the way [m]
 constexpr double kSoon = 1.5;           // cells so far along it are worth a third of the first [m]
 constexpr std::size_t kMostNeeded = 600;  // cells
-constexpr std::size_t kUsualPath = 512, kUsualNeeded = 40000;
+constexpr std::size_t kUsualPath = 512, kUsualNeeded = 40000, kUsualNumbers = 200000;
 constexpr int kStrides[] = {1, 2, 4};  // cells between places
 constexpr std::size_t kMostPlaces = 4000, kMostTried = 1500, kMostTraced = 60;
 constexpr double kFlies = 1.0, kTurns = 1.2,
-                 kStays = 0.6;            // [m/s], [rad/s], [s]: what a look takes
-constexpr std::size_t kArena = 16 << 20;  // as much as the places and their neighbours take [bytes]
+                 kStays = 0.6;                      // [m/s], [rad/s], [s]: what a look takes
 constexpr double kSamePlace = 0.4, kSameYaw = 0.5;  // of a struck one [m], [rad]
 
 /// Calls visit(cell) for the cells of the hull's ball at p that were not seen free and are not the deck's. Ends where
@@ -57,12 +52,6 @@ bool ForEachUnseen(const HullSpace& hull, const Eigen::Vector3d& p, Visit&& visi
   return true;
 }
 
-/// Of cells that are less than a thousand from an origin.
-std::int64_t KeyOf(const CellIndex& from_origin) {
-  const CellIndex at = from_origin.array() + 1024;
-  return (std::int64_t{at.z()} << 40) + (std::int64_t{at.y()} << 20) + at.x();
-}
-
 bool IsStruck(const Viewpoint& view, const std::vector<Viewpoint>& struck) {
   return std::any_of(struck.begin(), struck.end(), [&](const Viewpoint& old) {
     return (old.p_WB - view.p_WB).norm() < kSamePlace &&
@@ -72,12 +61,38 @@ bool IsStruck(const Viewpoint& view, const std::vector<Viewpoint>& struck) {
 
 }  // namespace
 
-Lookout::Lookout(double vertical_cost) : arena_(kArena), search_({.vertical = vertical_cost}) {
+Lookout::Lookout(double vertical_cost) : search_({.vertical = vertical_cost}) {
   path_.reserve(kUsualPath);
   needed_.reserve(kUsualNeeded);
   places_.reserve(2 * kMostPlaces);
   candidates_.reserve(2 * kMostTried);
+  queue_.reserve(27 * kMostPlaces);
   for (Look* look : {&best_, &tried_}) look->cells.reserve(kMostNeeded + 1);
+}
+
+void Lookout::Prepare(const OccupancyMap& map) {
+  search_.Reserve(map);
+  numbers_.Begin(map);
+}
+
+void Lookout::CellNumbers::Begin(const OccupancyMap& map) {
+  if (size_ != map.size() || numbers_.empty()) {
+    size_ = map.size();
+    numbers_.assign(static_cast<std::size_t>(size_.prod()), kNone);
+    set_.reserve(kUsualNumbers);
+    set_.clear();
+  }
+  for (const std::uint32_t at : set_) numbers_[at] = kNone;
+  set_.clear();
+  origin_ = map.origin();
+}
+
+/// It will be set. @pre the cell is in the window
+float& Lookout::CellNumbers::At(const CellIndex& cell) {
+  const CellIndex at = cell - origin_;
+  const auto i = static_cast<std::uint32_t>((at.z() * size_.y() + at.y()) * size_.x() + at.x());
+  if (numbers_[i] == kNone) set_.push_back(i);
+  return numbers_[i];
 }
 
 double Lookout::Length(const FreeSpace& space, const Eigen::Vector3d& from,
@@ -100,13 +115,13 @@ double Lookout::Length(const FreeSpace& space, const Eigen::Vector3d& from,
 bool Lookout::NoteNeeded(const HullSpace& hull, const Eigen::Vector3d& from) {
   const OccupancyMap& map = *hull.space->map;
   needed_.clear();
-  std::pmr::monotonic_buffer_resource arena(arena_.data(), arena_.size());
-  std::pmr::unordered_set<std::int64_t> noted(&arena);  // a cell is touched at several places
+  numbers_.Begin(map);
   double along = 0.0;
   const auto note = [&](const CellIndex& cell) {
-    if (!map.IsOccupied(cell) && noted.insert(KeyOf(cell - map.origin())).second) {
-      needed_.push_back({cell, std::exp(-along / kSoon)});
-    }
+    if (!map.InWindow(cell) || map.IsOccupied(cell)) return true;
+    float& noted = numbers_.At(cell);  // it is touched at several places
+    if (noted == CellNumbers::kNone) needed_.push_back({cell, std::exp(-along / kSoon)});
+    noted = 0.0f;
     return true;
   };
   ForEachUnseen(hull, from, note);
@@ -152,34 +167,33 @@ bool Lookout::Flood(const HullSpace& hull, const Place& from, int stride) {
       return !map.IsOccupied(cell) && (map.CentreOf(cell) - begin_.p_W).norm() < at_start;
     });
   };
-  struct Entry {
-    double way;
-    CellIndex node;
-    bool operator<(const Entry& other) const { return way > other.way; }
-  };
-  constexpr double kUnknown = std::numeric_limits<double>::infinity(), kClosed = -1.0;
-  std::pmr::monotonic_buffer_resource arena(arena_.data(), arena_.size());
-  std::pmr::unordered_map<std::int64_t, double> ways(&arena);
-  std::priority_queue<Entry, std::pmr::vector<Entry>> queue(std::less<Entry>(), &arena);
-  ways.emplace(KeyOf(CellIndex::Zero()), 0.0);
-  queue.push({0.0, CellIndex::Zero()});
-  while (!queue.empty()) {
+  // Of a place: how far it is, or that the hull does not fit.
+  constexpr float kClosed = -1.0f;
+  const auto farther = [](const Entry& a, const Entry& b) { return a.way > b.way; };
+  numbers_.Begin(map);
+  queue_.clear();
+  queue_.push_back({0.0f, CellIndex::Zero()});
+  numbers_.At(map.CellOf(from.p_W)) = 0.0f;
+  while (!queue_.empty()) {
     if (places_.size() == most) return false;
-    const Entry at = queue.top();
-    queue.pop();
-    if (at.way > ways[KeyOf(at.node)]) continue;
-    places_.push_back({place(at.node), from.way + at.way});
+    std::pop_heap(queue_.begin(), queue_.end(), farther);
+    const Entry at = queue_.back();
+    queue_.pop_back();
+    const Eigen::Vector3d here = place(at.node);
+    if (at.way > numbers_.At(map.CellOf(here))) continue;
+    places_.push_back({here, from.way + static_cast<double>(at.way)});
     for (int i = 0; i < 27; ++i) {
       const CellIndex step(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
-      const CellIndex next = at.node + step;
-      const double way = at.way + side * step.cast<double>().norm();
-      const auto [known, is_new] = ways.emplace(KeyOf(next), kUnknown);
-      if (is_new && !fits(place(next))) known->second = kClosed;
-      if (way >= known->second) continue;
-      const Eigen::Vector3d between = 0.5 * (place(at.node) + place(next));
-      if (hull.space->Blocked(between)) continue;
-      known->second = way;
-      queue.push({way, next});
+      const Eigen::Vector3d there = place(at.node + step), between = 0.5 * (here + there);
+      const CellIndex cell = map.CellOf(there);
+      if (!map.InWindow(cell)) continue;
+      float& known = numbers_.At(cell);
+      if (known == CellNumbers::kNone && !fits(there)) known = kClosed;
+      const float way = at.way + static_cast<float>(side * step.cast<double>().norm());
+      if (way >= known || hull.space->Blocked(between)) continue;
+      known = way;
+      queue_.push_back({way, at.node + step});
+      std::push_heap(queue_.begin(), queue_.end(), farther);
     }
   }
   return true;

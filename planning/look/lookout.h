@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <vector>
 
 #include <Eigen/Core>
@@ -26,7 +27,7 @@ class Lookout {
   explicit Lookout(double vertical_cost);
 
   /// Makes room for maps with this one's window.
-  void Prepare(const OccupancyMap& map) { search_.Reserve(map); }
+  void Prepare(const OccupancyMap& map);
 
   /// The potential: what the shortest way over what is not known to block costs [m]. Infinite: there is none in the
   /// window. Where the goal is out of the window the way ends at its border, and the rest is straight.
@@ -70,8 +71,26 @@ class Lookout {
   double Trace(const OccupancyMap& map, const std::vector<LookCamera>& cameras,
                const Candidate& candidate, const Eigen::Vector3d& pull_W, Look* look) const;
 
-  std::vector<std::byte> arena_;  ///< of what a call needs alone
+  /// A number for each cell of the window, of which few are set.
+  class CellNumbers {
+   public:
+    static constexpr float kNone = std::numeric_limits<float>::infinity();
+    void Begin(const OccupancyMap& map);
+    float& At(const CellIndex& cell);
+
+   private:
+    CellIndex origin_, size_;
+    std::vector<float> numbers_;
+    std::vector<std::uint32_t> set_;
+  };
+  struct Entry {
+    float way;
+    CellIndex node;
+  };
+
   SpanSearch search_;
+  CellNumbers numbers_;
+  std::vector<Entry> queue_;
   GuidePath path_;
   std::vector<Needed> needed_;
   Place begin_,

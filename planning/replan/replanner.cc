@@ -36,8 +36,9 @@ constexpr int kUsualPaths = 32;       // room for those of one step
 constexpr int kUsualPathPoints = 512;
 constexpr double kClockRounding = 1e-6;  // [s]
 constexpr double kRestartAfter = 2.0;    // a longer pause between calls resets the memory [s]
-constexpr double kOnTheWay = 0.5;        // of the longest plan, where the end is too far
-constexpr double kLowestWait = 0.6;      // of the body over a deck below a roof [m]
+constexpr double kCaught = 0.5;      // of the way there, that the end moves in that time at most
+constexpr double kOnTheWay = 0.5;    // of the longest plan, where the end is too far
+constexpr double kLowestWait = 0.6;  // of the body over a deck below a roof [m]
 constexpr double kLookAhead = 2.0;       // of the cells that the next stops need [s]
 
 /// Length of what is left of a curve over the straight line between its ends, at least 1.
@@ -256,7 +257,8 @@ void Replanner::Impl::Begin(const ReplanInput& input) {
   for (solvers::TermCost& term : result_.solver.cost_by_term) term.cost = 0.0;
 }
 
-/// Where plans of this step end. If that is too far for one, they end on the straight way there.
+/// Where plans of this step end. If that is too far for one, they end on the straight way there. A pad that is hardly
+/// slower than the vehicle is not chased.
 void Replanner::Impl::SetEnd(const ReplanInput& input, const SplineState& start) {
   pad_ = input.pad;
   end_ = input.endpoint;
@@ -269,6 +271,8 @@ void Replanner::Impl::SetEnd(const ReplanInput& input, const SplineState& start)
   const double guess = GuessDuration(start, t0, *pad_, end_, limits_, 1.0);
   if (guess <= options_.max_duration || !std::isfinite(guess)) return;
   const Eigen::Vector3d end = EndStateAt(*pad_, end_, t0).state.p;
+  const Eigen::Vector3d later = EndStateAt(*pad_, end_, t0 + options_.max_duration).state.p;
+  if ((later - end).norm() > kCaught * (end - start.p).norm()) return;
   on_the_way_.emplace(start.p + kOnTheWay * options_.max_duration / guess * (end - start.p));
   pad_ = &*on_the_way_;
   end_ = AtRest();
