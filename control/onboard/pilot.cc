@@ -220,6 +220,7 @@ const planning::ReplanResult* Pilot::Replan(const estimation::VehicleState& vehi
   const bool lands_as_wanted =
       to_contact && kept && lands_ && result.reason != planning::ReplanReason::kInvalidInput;
   at_goal_ = result.reason == planning::ReplanReason::kAtGoal;
+  out_of_reach_ = result.reason == planning::ReplanReason::kPadUnreachable;
   last_planned_ = result.status == planning::ReplanStatus::kPlanned || at_goal_ || lands_as_wanted;
   has_plan_ = last_planned_ || kept;
   if (last_planned_) planned_t_ = vehicle.t;
@@ -298,7 +299,8 @@ const planning::ReplanResult& Pilot::Ask(bool for_plan, const estimation::PadFil
   looks_from_.reset();
   input.look_from_W.reset();
   if (parts_.scout && input.pad != nullptr) {
-    looks_from_ = parts_.scout->Step(input, cameras, map, for_plan && !arriving() && !lands_);
+    const bool may_look = for_plan && !arriving() && !lands_ && !out_of_reach_;
+    looks_from_ = parts_.scout->Step(input, cameras, map, may_look);
     if (looks_from_) input.look_from_W = looks_from_->p_WB;
   }
   const planning::ReplanResult& result =

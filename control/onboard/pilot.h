@@ -141,6 +141,7 @@ class Pilot {
   bool sees_ = true;        ///< depth images come
   bool has_plan_ = false;
   bool idle_ = false;
+  bool out_of_reach_ = false;                      ///< the pad drives away: no look would help
   bool at_goal_ = false;                           ///< the last step made no plan: the goal is near
   const planning::UniformBspline* way_ = nullptr;  // of the latest plan, the planner's own
   bool lands_ = false;                             // what is flown ends in contact
