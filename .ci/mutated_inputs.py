@@ -26,6 +26,7 @@ ROOT = Path(__file__).resolve().parents[1]
 PROGRAM = Path(os.environ.get("TOUCHDOWN_PROGRAM", ROOT / "build/release/bin/touchdown"))
 WORLDS, VEHICLES = ROOT / "docs/examples/worlds", ROOT / "docs/examples/vehicles"
 MEMORY, TIME = 4_000_000 << 10, 10.0
+NOTE = re.compile("warning: |trials were flown before")  # may stand before a sentence
 # What no sentence holds.
 RAW = re.compile(r"std::|terminate|what\(\)|basic_string|bad_alloc|vector::|map::at|\[json|unknown exception|yaml-cpp")
 SHORT = ["--set", "timeout=1"]
@@ -301,7 +302,7 @@ def fault_of(command, path):
         return "hangs", TIME, None
     took = time.monotonic() - begin
     err = done.stderr.decode("utf-8", "replace")
-    lines = [line for line in err.splitlines() if "warning: " not in line and line.strip()]
+    lines = [line for line in err.splitlines() if not NOTE.search(line) and line.strip()]
     if done.returncode not in (0, 1, 2):
         return f"ends with {done.returncode}: {err[-200:]}", took, done.returncode
     if RAW.search(err):

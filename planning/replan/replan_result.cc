@@ -90,7 +90,7 @@ const char* Explain(ReplanReason reason) {
       return "The end is inside an inflated obstacle, or beyond floor or ceiling, at every arrival "
              "time tried.";
     case ReplanReason::kPadUnreachable:
-      return "No arrival time up to the longest allowed reaches the pad within the limits.";
+      return "The pad or goal drives away faster than the vehicle may fly.";
     case ReplanReason::kSearchFailed:
       return "No path around an obstacle was found, or the search used up its work.";
     case ReplanReason::kSolverFailed:

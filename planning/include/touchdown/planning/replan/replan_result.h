@@ -94,7 +94,7 @@ enum class ReplanReason {
   kInvalidInput,      ///< a number is not finite or absurd, or an earlier answer is still pending
   kStartBlocked,      ///< the start is inside an inflated obstacle
   kGoalBlocked,       ///< the end is inside an inflated obstacle
-  kPadUnreachable,    ///< no arrival time up to max_duration keeps the limits
+  kPadUnreachable,    ///< the pad or goal drives away faster than the vehicle may fly
   kSearchFailed,      ///< A* found no way around an obstacle within its expansions
   kSolverFailed,      ///< the backend returned no usable point
   kCollisionRemains,  ///< still blocked after every re-binding round
