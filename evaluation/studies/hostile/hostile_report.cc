@@ -35,14 +35,14 @@ std::string TableText(const std::vector<SweepRow>& rows, bool within) {
   const HostileTally all = TallyOf(rows, "", within);
   if (all.flights == 0) return {};
   std::string text = fmt::format("{} the assumptions\n", within ? "Within" : "Beyond");
-  text += fmt::format("  {:<13}{:>8}{:>6}{:>11}{:>9}{:>8}{:>16}{:>7}{:>9}{:>7}\n", "family",
-                      "flights", "way", "collisions", "contacts", "landed", "of seeing ways",
-                      "stood", "timeouts", "other");
+  text += fmt::format("  {:<13}{:>8}{:>6}{:>11}{:>14}{:>9}{:>8}{:>7}{:>9}{:>7}\n", "family",
+                      "flights", "way", "collisions", "arrived", "contacts", "landed", "stood",
+                      "timeouts", "other");
   const auto line = [&](const std::string& name, const HostileTally& t) {
-    text += fmt::format("  {:<13}{:>8}{:>6}{:>11}{:>9}{:>8}{:>16}{:>7}{:>9}{:>7}\n", name,
-                        t.flights, t.ways, t.collisions, t.all_contacts(), t.landed,
-                        fmt::format("{} of {}", t.seeing_landed, t.seeing), t.all_stood(),
-                        t.timeouts, t.lost + t.other);
+    text +=
+        fmt::format("  {:<13}{:>8}{:>6}{:>11}{:>14}{:>9}{:>8}{:>7}{:>9}{:>7}\n", name, t.flights,
+                    t.ways, t.collisions, fmt::format("{} of {}", t.seeing_landed, t.seeing),
+                    t.all_contacts(), t.landed, t.all_stood(), t.timeouts, t.lost + t.other);
   };
   for (const HostileFamily& family : HostileFamilies()) {
     const HostileTally tally = TallyOf(rows, family.name, within);
@@ -52,7 +52,7 @@ std::string TableText(const std::vector<SweepRow>& rows, bool within) {
   text +=
       fmt::format("  collisions with what stands {}; other contacts {}\n",
                   RateText(all.collisions, all.flights), RateText(all.all_contacts(), all.flights));
-  text += fmt::format("  a way exists {}; landed of those that see at least once a second {}\n",
+  text += fmt::format("  a way exists {}; arrived of those that see at least once a second {}\n",
                       RateText(all.ways, all.flights), RateText(all.seeing_landed, all.seeing));
   text +=
       fmt::format("  contacts: {}; stood: {}\n", CountsText(all.contacts), CountsText(all.stood));
