@@ -18,7 +18,7 @@ constexpr double kSoon = 1.5;           // cells so far along it are worth a thi
 constexpr std::size_t kMostNeeded = 600;  // cells
 constexpr std::size_t kUsualPath = 512, kUsualNeeded = 40000, kUsualNumbers = 200000;
 constexpr int kStrides[] = {1, 2, 4};  // cells between places
-constexpr std::size_t kMostPlaces = 4000, kMostTried = 1500, kMostTraced = 60;
+constexpr std::size_t kMostPlaces = 2000, kMostTried = 500, kMostTraced = 40;
 constexpr double kFlies = 1.0, kTurns = 1.2,
                  kStays = 0.6;                      // [m/s], [rad/s], [s]: what a look takes
 constexpr double kSamePlace = 0.4, kSameYaw = 0.5;  // of a struck one [m], [rad]
