@@ -146,7 +146,7 @@ Landing Fly(std::uint64_t seed, const Mess& mess) {
   Landing landing;
   bool met = false;
   Setpoint setpoint;
-  for (int k = 0; world.vehicle.t < 40.0 + mess.stall; ++k) {
+  for (int k = 0; world.vehicle.t < 60.0 + mess.stall; ++k) {
     const double t = world.vehicle.t, now = mess.Clock(t);
     if (t >= mess.leap_at && t < mess.leap_at + mess.stall) {
       world.Step(Autopilot(setpoint, world, now));
