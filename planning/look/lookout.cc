@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "planning/look/sight.h"
 #include "touchdown/planning/certify/stored_stop.h"
 
 namespace touchdown::planning {
@@ -16,7 +15,8 @@ constexpr int kMostSpans = 60000;       // that a search expands
 constexpr double kBetweenBalls = 0.15;  // along the way [m]
 constexpr double kSoon = 1.5;           // cells so far along it are worth a third of the first [m]
 constexpr std::size_t kMostNeeded = 600;  // cells
-constexpr std::size_t kUsualPath = 512, kUsualNeeded = 40000, kUsualNumbers = 200000;
+constexpr std::size_t kUsualPath = 512, kUsualNeeded = 40000, kUsualNumbers = 200000,
+                      kUsualCameras = 8;
 constexpr int kStrides[] = {1, 2, 4};  // cells between places
 constexpr std::size_t kMostPlaces = 2000, kMostTried = 500, kMostTraced = 40;
 constexpr double kFlies = 1.0, kTurns = 1.2,
@@ -67,6 +67,7 @@ Lookout::Lookout(double vertical_cost) : search_({.vertical = vertical_cost}) {
   places_.reserve(2 * kMostPlaces);
   candidates_.reserve(2 * kMostTried);
   queue_.reserve(27 * kMostPlaces);
+  sights_.reserve(kUsualCameras);
   for (Look* look : {&best_, &tried_}) look->cells.reserve(kMostNeeded + 1);
 }
 
@@ -259,14 +260,15 @@ void Lookout::FindCandidates(const HullSpace& hull, const std::vector<LookCamera
 
 /// What is in sight of the candidate; returns its worth over the time.
 double Lookout::Trace(const OccupancyMap& map, const std::vector<LookCamera>& cameras,
-                      const Candidate& candidate, const Eigen::Vector3d& pull_W, Look* look) const {
+                      const Candidate& candidate, const Eigen::Vector3d& pull_W, Look* look) {
   look->from = candidate.from;
   look->way = candidate.way;
   look->cells.clear();
+  sights_.clear();
+  for (const LookCamera& camera : cameras) sights_.emplace_back(camera, candidate.from, pull_W);
   double worth = 0.0;
   for (const Needed& needed : needed_) {
-    const bool seen = std::any_of(cameras.begin(), cameras.end(), [&](const LookCamera& camera) {
-      const Sight sight(camera, look->from, pull_W);
+    const bool seen = std::any_of(sights_.begin(), sights_.end(), [&](const Sight& sight) {
       return sight.Holds(map.CentreOf(needed.cell)) && sight.Reaches(needed.cell, map);
     });
     if (!seen) continue;

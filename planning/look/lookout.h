@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 
+#include "planning/look/sight.h"
 #include "planning/search/span_search.h"
 #include "touchdown/planning/certify/swept_hull.h"
 #include "touchdown/planning/look/scout.h"
@@ -69,7 +70,7 @@ class Lookout {
                       const estimation::VehicleState& vehicle, const Eigen::Vector3d& pull_W,
                       const std::vector<Viewpoint>& struck);
   double Trace(const OccupancyMap& map, const std::vector<LookCamera>& cameras,
-               const Candidate& candidate, const Eigen::Vector3d& pull_W, Look* look) const;
+               const Candidate& candidate, const Eigen::Vector3d& pull_W, Look* look);
 
   /// A number for each cell of the window, of which few are set.
   class CellNumbers {
@@ -97,6 +98,7 @@ class Lookout {
       seen_until_;  ///< of the way: where it begins, and where its part ends that was seen
   std::vector<Place> places_;
   std::vector<Candidate> candidates_;
+  std::vector<Sight> sights_;  ///< of the candidate at hand, one for each camera
   Look best_, tried_;
 };
 

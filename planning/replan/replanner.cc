@@ -439,8 +439,7 @@ Attempt Replanner::Impl::FirstAttempt(const ReplanInput& input, const SplineStat
   facts->min_duration = options_.min_duration;
   facts->max_duration = options_.max_duration;
   // An arrival once promised is kept: a new guess at every step would postpone it for ever. An arrival that is soon
-  // on the straight way need not be on a long way around. An end
-  // on the way goes on ahead.
+  // on the straight way need not be on a long way around. An end on the way goes on ahead.
   const double left = next_.curve.t_end() - input.t_start;
   const bool on_plan = planned_before_ && !result_.from_odometry;
   const bool promised =
