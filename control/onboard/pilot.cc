@@ -23,7 +23,7 @@ namespace {
 constexpr double kLookAhead = 0.8;     // the heading is where the vehicle will be then [s]
 constexpr double kLookDistance = 0.3;  // nearer than this the way ahead says nothing [m]
 constexpr double kInSight =
-    30.0 * estimation::kRadPerDeg;        // what is to be seen is no farther off the heading
+    15.0 * estimation::kRadPerDeg;        // what is to be seen is no farther off the heading
 constexpr double kNearest = 0.1;          // of what is to be seen, from the vehicle's axis [m]
 constexpr double kAlignTolerance = 0.35;  // heading counts as aligned within this [rad]
 constexpr double kContactShare = 0.2;     // of the weight, on the feet: enough to be a contact
@@ -213,6 +213,8 @@ const planning::ReplanResult* Pilot::Replan(const estimation::VehicleState& vehi
   measured_latency_ =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   replan_.late = DeliverLate(vehicle.t) && result.committed;
+  // Only one answer is ever pending, also where steps become more frequent.
+  if (result.committed) busy_until_ = std::max(busy_until_, input.t_start);
   // Where there is nothing left to plan, or what is flown lands, no plan is missing.
   const bool kept = result.status == planning::ReplanStatus::kKept;
   lands_ = parts_.planner_lands && result.Lands();

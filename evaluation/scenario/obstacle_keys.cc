@@ -48,7 +48,7 @@ SchemaKey<Element> PlaceKey(const char* what) {
 
 // x and y of two points or more.
 SchemaKey<WallObstacle> PointsKey() {
-  const auto range = schema::In(-200, 200, "m");
+  const auto range = schema::In(-600, 600, "m");
   return {"points",
           "m",
           range.ToString(),
@@ -71,7 +71,7 @@ SchemaKey<WallObstacle> PointsKey() {
 
 const ElementKeys<BoxObstacle>& BoxKeys() {
   static const ElementKeys<BoxObstacle> keys = {
-      schema::Vector<2, BoxObstacle>("centre", schema::In(-200, 200, "m"),
+      schema::Vector<2, BoxObstacle>("centre", schema::In(-600, 600, "m"),
                                      "centre of the base in W", TOUCHDOWN_AT(centre)),
       schema::Vector<3, BoxObstacle>("size", schema::Above(0, 100, "m"), "edges along x, y and z",
                                      TOUCHDOWN_AT(size)),
@@ -81,7 +81,7 @@ const ElementKeys<BoxObstacle>& BoxKeys() {
 
 const ElementKeys<CylinderObstacle>& CylinderKeys() {
   static const ElementKeys<CylinderObstacle> keys = {
-      schema::Vector<2, CylinderObstacle>("centre", schema::In(-200, 200, "m"),
+      schema::Vector<2, CylinderObstacle>("centre", schema::In(-600, 600, "m"),
                                           "centre of the base in W", TOUCHDOWN_AT(centre)),
       schema::Number<CylinderObstacle>("radius", schema::Above(0, 50, "m"), "radius",
                                        TOUCHDOWN_AT(radius)),
@@ -93,7 +93,7 @@ const ElementKeys<CylinderObstacle>& CylinderKeys() {
 
 const ElementKeys<SphereObstacle>& SphereKeys() {
   static const ElementKeys<SphereObstacle> keys = {
-      schema::Vector<3, SphereObstacle>("centre", schema::In(-200, 200, "m"), "middle in W",
+      schema::Vector<3, SphereObstacle>("centre", schema::In(-600, 600, "m"), "middle in W",
                                         TOUCHDOWN_AT(centre)),
       schema::Number<SphereObstacle>("radius", schema::Above(0, 50, "m"), "radius",
                                      TOUCHDOWN_AT(radius))};

@@ -22,7 +22,7 @@ void AddTaskKeys(KeyList& keys) {
                        "task follow: above the pad is up to here from its centre, horizontally",
                        TOUCHDOWN_AT(follow.distance)));
   keys.push_back(Vector<3, Scenario>(
-      "go_to.goal", In(-100, 100, "m"),
+      "go_to.goal", In(-500, 500, "m"),
       "task go_to: where the body's origin is to be, in W, at t = 0; planning.clearance and two "
       "cells from all obstacles, and no lower than plans are",
       TOUCHDOWN_AT(go_to.goal)));

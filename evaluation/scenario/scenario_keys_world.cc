@@ -27,7 +27,7 @@ void AddPadKeys(KeyList& keys) {
       "speed along the path, of a changing one the greatest; a pad that is faster than about 0.85 "
       "limits.speed is not caught",
       TOUCHDOWN_AT(pad.speed)));
-  keys.push_back(Vector<2, Scenario>("pad.start", In(-100, 100, "m"),
+  keys.push_back(Vector<2, Scenario>("pad.start", In(-500, 500, "m"),
                                      "pad centre at the start of the path, in W",
                                      TOUCHDOWN_AT(pad.start)));
   keys.push_back(Number<Scenario>("pad.heading_deg", In(-360, 360, "deg"),
@@ -151,7 +151,7 @@ void AddVehicleKeys(KeyList& keys) {
   keys.push_back(Text("vehicle", "default or the path of an MJCF file",
                       "the quadrotor; docs/vehicles.md", TOUCHDOWN_AT(vehicle)));
   AddAirframeKeys(keys);
-  keys.push_back(Vector<3, Scenario>("start.position", In(-100, 100, "m"),
+  keys.push_back(Vector<3, Scenario>("start.position", In(-500, 500, "m"),
                                      "the vehicle hovers here at t = 0, in W",
                                      TOUCHDOWN_AT(start.position)));
   keys.push_back(Vector<3, Scenario>("start.position_spread", In(0, 20, "m"),

@@ -17,8 +17,8 @@ constexpr double kSoon = 1.5;           // cells so far along it are worth a thi
 constexpr std::size_t kMostNeeded = 600;  // cells
 constexpr std::size_t kUsualPath = 512, kUsualNeeded = 40000, kUsualNumbers = 200000,
                       kUsualCameras = 8;
-constexpr int kStrides[] = {1, 2, 4};  // cells between places
-constexpr std::size_t kMostPlaces = 2000, kMostTried = 500, kMostTraced = 40;
+constexpr int kStrides[] = {4, 2, 1};  // cells between places
+constexpr std::size_t kManyPlaces = 500, kMostPlaces = 2000, kMostTried = 500, kMostTraced = 40;
 constexpr double kFlies = 1.0, kTurns = 1.2,
                  kStays = 0.6;                      // [m/s], [rad/s], [s]: what a look takes
 constexpr double kSamePlace = 0.4, kSameYaw = 0.5;  // of a struck one [m], [rad]
@@ -145,17 +145,18 @@ bool Lookout::NoteNeeded(const HullSpace& hull, const Eigen::Vector3d& from) {
   return !needed_.empty();
 }
 
-/// Adds the places to which cells lead that were seen free, the nearest first, as densely as their number allows.
+/// Adds the places to which cells lead that were seen free, the nearest first: few far apart in the open, more where it
+/// is narrow.
 void Lookout::Flood(const HullSpace& hull, const Place& from) {
   const std::size_t before = places_.size();
   for (const int stride : kStrides) {
     places_.resize(before);
-    if (Flood(hull, from, stride)) return;
+    Flood(hull, from, stride);
+    if (places_.size() - before >= kManyPlaces) return;
   }
 }
 
-/// False: there are more than fit.
-bool Lookout::Flood(const HullSpace& hull, const Place& from, int stride) {
+void Lookout::Flood(const HullSpace& hull, const Place& from, int stride) {
   const OccupancyMap& map = *hull.space->map;
   const double side = stride * map.resolution(), at_start = hull.radius() + kSweepRoom;
   const std::size_t most = places_.size() + kMostPlaces;
@@ -176,7 +177,7 @@ bool Lookout::Flood(const HullSpace& hull, const Place& from, int stride) {
   queue_.push_back({0.0f, CellIndex::Zero()});
   numbers_.At(map.CellOf(from.p_W)) = 0.0f;
   while (!queue_.empty()) {
-    if (places_.size() == most) return false;
+    if (places_.size() == most) return;
     std::pop_heap(queue_.begin(), queue_.end(), farther);
     const Entry at = queue_.back();
     queue_.pop_back();
@@ -197,7 +198,6 @@ bool Lookout::Flood(const HullSpace& hull, const Place& from, int stride) {
       std::push_heap(queue_.begin(), queue_.end(), farther);
     }
   }
-  return true;
 }
 
 const Look* Lookout::Highest(const HullSpace& hull, const Eigen::Vector3d& from,

@@ -64,7 +64,7 @@ class Lookout {
   };
 
   void Flood(const HullSpace& hull, const Place& from);
-  bool Flood(const HullSpace& hull, const Place& from, int stride);
+  void Flood(const HullSpace& hull, const Place& from, int stride);
 
   void FindCandidates(const HullSpace& hull, const std::vector<LookCamera>& cameras,
                       const estimation::VehicleState& vehicle, const Eigen::Vector3d& pull_W,

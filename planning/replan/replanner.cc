@@ -39,7 +39,6 @@ constexpr double kRestartAfter = 2.0;    // a longer pause between calls resets 
 constexpr double kCaught = 0.5;      // of the way there, that the end moves in that time at most
 constexpr double kOnTheWay = 0.5;    // of the longest plan, where the end is too far
 constexpr double kLowestWait = 0.6;  // of the body over a deck below a roof [m]
-constexpr double kLookAhead = 2.0;       // of the cells that the next stops need [s]
 
 /// Length of what is left of a curve over the straight line between its ends, at least 1.
 double DetourOf(const UniformBspline& curve, double from) {
@@ -376,14 +375,13 @@ const ReplanResult& Replanner::Impl::Finish(const Fallen& fallen, double t0) {
   return result_;
 }
 
-/// The cells that the next steps' stops need: on the way beyond the pair's first part.
+/// A cell that a later step's stop needs: the first on the way beyond the pair's first part.
 std::optional<Eigen::Vector3d> Replanner::Impl::NeededNext(const ReplanInput& input,
                                                            const HullSpace& hull) const {
   const UniformBspline& curve = next_.curve;
   const double t_from = input.t_start + reaction_;
-  const double t_to = std::min(t_from + kLookAhead, curve.t_end());
-  if (t_to <= t_from) return std::nullopt;
-  return SweepHull(curve, t_from, t_to, {curve.Position(t_from), t_from}, hull, kAnyTime).unseen_W;
+  if (curve.t_end() <= t_from) return std::nullopt;
+  return SweepHull(curve, t_from, curve.t_end(), {curve.Position(t_from), t_from}, hull, kAnyTime).unseen_W;
 }
 
 const ReplanResult& Replanner::Impl::Rest(const ReplanInput& input, double climb,
