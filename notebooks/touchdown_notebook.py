@@ -33,8 +33,8 @@ from touchdown_report.study import statistics  # noqa: E402
 from touchdown_report.style import STYLE  # noqa: E402
 
 # Okabe and Ito's palette, as in touchdown_report.
-COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"]
-STAGES = ["predict", "search", "pairs", "solve", "check", "certificate", "other"]
+COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#999999"]
+STAGES = ["look", "predict", "search", "pairs", "solve", "check", "certificate", "other"]
 
 
 class CommandFailed(Exception):

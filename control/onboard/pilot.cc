@@ -16,6 +16,7 @@
 #include "control/tracking/vehicle_frequencies.h"
 #include "estimation/base/degrees.h"
 #include "touchdown/planning/replan/replanner.h"
+#include "touchdown/planning/replan/stage_timer.h"
 
 namespace touchdown::control {
 namespace {
@@ -300,7 +301,9 @@ const planning::ReplanResult& Pilot::Ask(bool for_plan, const estimation::PadFil
   if (input.pad != nullptr) replan_.pad = input.pad->At(input.t_now);
   looks_from_.reset();
   input.look_from_W.reset();
+  replan_.look = {"look"};
   if (parts_.scout && input.pad != nullptr) {
+    planning::StageTimer timer(&replan_.look);
     const bool may_look = for_plan && !arriving() && !lands_ && !out_of_reach_;
     looks_from_ = parts_.scout->Step(input, cameras, map, may_look);
     if (looks_from_) input.look_from_W = looks_from_->p_WB;

@@ -216,12 +216,15 @@ class Trial {
     if (plan->status == planning::ReplanStatus::kPlanned) stand_watch_.Planned();
     if (safety_watch_ && !judge_.touchdown())
       safety_watch_->Step(*plan, asked.request.input.margins, asked.late);
-    const planning::StageTimes::Span& total = plan->times.total;
+    planning::StageTimes times = plan->times;
+    times.look = asked.look;
+    times.total.Add(asked.look);
+    const planning::StageTimes::Span& total = times.total;
     result_.timing.replan_wall_ms.push_back(1e3 * total.wall);
     result_.timing.replan_cpu_ms.push_back(1e3 * total.cpu);
     if (total.wall > asked.latency_s) ++result_.timing.deadline_misses;
     if (total.cpu > asked.latency_s) ++result_.timing.deadline_misses_cpu;
-    if (samples_ != nullptr) samples_->replans.push_back(SampleOf(t, *plan));
+    if (samples_ != nullptr) samples_->replans.push_back(SampleOf(t, *plan, times));
     if (record_ == nullptr) return;
     RecordPlan row;
     row.request = asked.request;

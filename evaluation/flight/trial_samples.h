@@ -40,11 +40,12 @@ struct TrialSamples {
 };
 
 /// `t_now`: when the step was asked for [s].
-inline ReplanSample SampleOf(double t_now, const planning::ReplanResult& result) {
+inline ReplanSample SampleOf(double t_now, const planning::ReplanResult& result,
+                             const planning::StageTimes& times) {
   const std::string forbidden_by(result.forbidden_by);
   return {t_now,        result.status, result.reason,  result.from_odometry,
           result.pairs, result.solves, result.rebinds, result.solver.iterations,
-          result.work,  result.times,  forbidden_by};
+          result.work,  times,         forbidden_by};
 }
 
 }  // namespace touchdown::evaluation

@@ -149,8 +149,9 @@ Profile ProfileRecord(const RecordedFlight& flight, const ProfileOptions& option
     Listen(options, &profile.spans, [&] {
       for (int step = 0; step < replay.steps(); ++step) {
         replay.Seek(step);
+        const planning::ReplanResult& result = replay.Solve();
         run.samples.replans.push_back(
-            SampleOf(replay.recorded().request.input.t_now, replay.Solve()));
+            SampleOf(replay.recorded().request.input.t_now, result, result.times));
       }
     });
     profile.runs.push_back(std::move(run));

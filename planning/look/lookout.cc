@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "touchdown/planning/certify/stored_stop.h"
 
@@ -61,7 +62,7 @@ bool IsStruck(const Viewpoint& view, const std::vector<Viewpoint>& struck) {
 
 }  // namespace
 
-Lookout::Lookout(double vertical_cost) : search_({.vertical = vertical_cost}) {
+Lookout::Lookout(double vertical_cost) : vertical_cost_(vertical_cost), search_({.vertical = vertical_cost}) {
   path_.reserve(kUsualPath);
   needed_.reserve(kUsualNeeded);
   places_.reserve(2 * kMostPlaces);
@@ -98,19 +99,17 @@ float& Lookout::CellNumbers::At(const CellIndex& cell) {
 
 double Lookout::Length(const FreeSpace& space, const Eigen::Vector3d& from,
                        const Eigen::Vector3d& goal) {
-  const OccupancyMap& map = *space.map;
-  const Eigen::Vector3d low = map.CentreOf(map.origin()),
-                        high = map.CentreOf(map.origin() + map.size() - CellIndex::Ones());
-  double share = 1.0;  // of the straight line that is in the window
-  for (int c = 0; c < 3; ++c) {
-    const double along = goal[c] - from[c];
-    if (along == 0.0) continue;
-    share = std::min(share, std::max(0.0, ((along > 0.0 ? high : low)[c] - from[c]) / along));
-  }
-  const Eigen::Vector3d end = from + share * (goal - from);
-  const SearchStatus status = search_.Search(space, from, end, kMostSpans, &path_);
-  if (status != SearchStatus::kFound) return std::numeric_limits<double>::infinity();
-  return search_.cost() + (goal - end).norm();
+  const bool found =
+      search_.SearchOut(space, from, goal, kMostSpans, &path_) == SearchStatus::kFound;
+  return found ? search_.cost() : std::numeric_limits<double>::infinity();
+}
+
+double Lookout::Least(const OccupancyMap& map, const Eigen::Vector3d& from,
+                      const Eigen::Vector3d& goal) const {
+  const Eigen::Array3d way = (map.CellOf(goal) - map.CellOf(from)).cast<double>().array().abs();
+  const double longer = way.head<2>().maxCoeff(), shorter = way.head<2>().minCoeff();
+  return map.resolution() *
+         (longer + (std::numbers::sqrt2 - 1.0) * shorter + vertical_cost_ * way.z());
 }
 
 bool Lookout::NoteNeeded(const HullSpace& hull, const Eigen::Vector3d& from) {

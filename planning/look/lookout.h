@@ -31,8 +31,12 @@ class Lookout {
   void Prepare(const OccupancyMap& map);
 
   /// The potential: what the shortest way over what is not known to block costs [m]. Infinite: there is none in the
-  /// window. Where the goal is out of the window the way ends at its border, and the rest is straight.
+  /// window. Where the goal is out of the window the way ends where it leaves it, and the rest is straight.
   double Length(const FreeSpace& space, const Eigen::Vector3d& from, const Eigen::Vector3d& goal);
+
+  /// The least that it can be: over nothing but free space.
+  double Least(const OccupancyMap& map, const Eigen::Vector3d& from,
+               const Eigen::Vector3d& goal) const;
 
   /// Notes the cells that the hull would touch on that way, and that were never seen free; of many, some evenly.
   /// False: there are none. @pre the last Length, from the same place, was finite
@@ -89,6 +93,7 @@ class Lookout {
     CellIndex node;
   };
 
+  double vertical_cost_;
   SpanSearch search_;
   CellNumbers numbers_;
   std::vector<Entry> queue_;

@@ -112,22 +112,29 @@ class Scout::Impl {
                 input.t_start + options_.min_duration, options_.pad_radius, options_.contact_height,
                 &space);
     const HullSpace hull = HullFor(options_, space, input.margins.Sum(), DeckOf(input));
+    const bool goal_moved = (now.goal_W - best_goal_W_).norm() > kNearer;
+    const double there =
+        goal_moved ? lookout_.Length(space, now.p_WB, best_goal_W_) : length_;
     const bool progress = MadeProgress(space);
-    if (ShallClimb(length_)) return Climb(hull);
+    if (goal_moved) {
+      best_ += length_ - there;
+      best_goal_W_ = now.goal_W;
+    }
+    if (ShallClimb(map)) return Climb(hull);
     if (progress) return;
     if (!lookout_.NoteNeeded(hull, now.p_WB)) return;
     look_ = lookout_.Choose(hull, cameras, input.vehicle, input.pull_W, struck_);
     if (look_ == nullptr) struck_.clear();  // all were tried: again
   }
 
-  /// Around an obstacle that has no end one way is as good as any: after as long a way as that, over it. A goal that
-  /// moves has no such best.
-  bool ShallClimb(double length) {
+  /// Around an obstacle that has no end one way is as good as any: after as long a way as that, over it. A straight way
+  /// is none around.
+  bool ShallClimb(const OccupancyMap& map) {
     const Was& now = was_.back();
-    if (!std::isfinite(length)) return !up_;
-    if (length < best_ - kNearer || (now.goal_W - best_goal_W_).norm() > kNearer) {
-      best_ = length;
-      best_goal_W_ = now.goal_W;
+    if (!std::isfinite(length_)) return !up_;
+    const bool straight = length_ < lookout_.Least(map, now.p_WB, now.goal_W) + kNearer;
+    if (straight || !(length_ >= best_ - kNearer)) {
+      best_ = length_;
       detour_ = 0.0;
       most_detour_ = kDetour;
       up_ = false;
@@ -185,7 +192,7 @@ class Scout::Impl {
   double asked_t_ = -std::numeric_limits<double>::infinity();  // for a place to look from, last
   double length_ = 0.0;  // of the shortest way, when it was last asked for
   double best_ = std::numeric_limits<double>::infinity();  // the least one so far, ...
-  Eigen::Vector3d best_goal_W_ = Eigen::Vector3d::Zero();  // ... to there,
+  Eigen::Vector3d best_goal_W_ = Eigen::Vector3d::Zero();  // ... with the goal here,
   double detour_ = 0.0;                                    // and what was flown since [m]
   double most_detour_ = kDetour;
   bool up_ = false;                  // as high as it could climb, for that best

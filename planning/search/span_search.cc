@@ -102,14 +102,37 @@ SearchStatus SpanSearch::Search(const FreeSpace& space, const Eigen::Vector3d& f
                                 const Eigen::Vector3d& to, int max_expansions, GuidePath* path,
                                 std::span<const Barrier> barriers, double max_cost) {
   path->clear();
+  const OccupancyMap& map = *space.map;
+  CellIndex goal = map.CellOf(to);
+  if (!map.InWindow(goal)) return SearchStatus::kEndsOutside;
+  if (!GridSearch::NearestFree(space, &goal)) return SearchStatus::kEndsBlocked;
+  return SearchFrom(space, map.CellOf(from), goal, false, max_expansions, path, barriers, max_cost);
+}
+
+SearchStatus SpanSearch::SearchOut(const FreeSpace& space, const Eigen::Vector3d& from,
+                                   const Eigen::Vector3d& to, int max_expansions, GuidePath* path) {
+  path->clear();
+  const OccupancyMap& map = *space.map;
+  CellIndex goal = map.CellOf(to);
+  const int level = goal.z(), lowest = map.origin().z();
+  goal.z() = std::clamp(level, lowest, lowest + map.size().z() - 1);
+  const bool out = !map.InWindow(goal);
+  if (!out && !GridSearch::NearestFree(space, &goal)) return SearchStatus::kEndsBlocked;
+  const SearchStatus status = SearchFrom(space, map.CellOf(from), goal, out, max_expansions, path,
+                                         {}, std::numeric_limits<double>::infinity());
+  cost_ += vertical_cost_ * map.resolution() * std::abs(level - goal.z());
+  return status;
+}
+
+/// @param out the goal is out of the window: to its border.
+SearchStatus SpanSearch::SearchFrom(const FreeSpace& space, CellIndex start, CellIndex goal,
+                                    bool out, int max_expansions, GuidePath* path,
+                                    std::span<const Barrier> barriers, double max_cost) {
   expansions_ = 0;
   cost_ = 0.0;
   const OccupancyMap& map = *space.map;
-  CellIndex start = map.CellOf(from), goal = map.CellOf(to);
-  if (!map.InWindow(start) || !map.InWindow(goal)) return SearchStatus::kEndsOutside;
-  if (!GridSearch::NearestFree(space, &start) || !GridSearch::NearestFree(space, &goal)) {
-    return SearchStatus::kEndsBlocked;
-  }
+  if (!map.InWindow(start)) return SearchStatus::kEndsOutside;
+  if (!GridSearch::NearestFree(space, &start)) return SearchStatus::kEndsBlocked;
   Reserve(map);
   columns_.Begin(space, barriers);
   if (++search_ > kMostSearches) {
@@ -120,9 +143,10 @@ SearchStatus SpanSearch::Search(const FreeSpace& space, const Eigen::Vector3d& f
   start -= map.origin();
   goal -= map.origin();
   const SearchStatus status =
-      SearchOn(start, goal, max_expansions, static_cast<float>(max_cost / map.resolution()));
+      SearchOn(start, goal, out, max_expansions, static_cast<float>(max_cost / map.resolution()));
   if (status != SearchStatus::kFound) return status;
   cost_ *= map.resolution();
+  if (out) goal = {way_.back().x, way_.back().y, end_z_};
   Straighten(start.z(), goal.z());
   for (std::size_t i = 0; i < way_.size(); ++i) {
     // Between the gates at both sides of a column, which are within its span.
@@ -136,8 +160,8 @@ SearchStatus SpanSearch::Search(const FreeSpace& space, const Eigen::Vector3d& f
   return status;
 }
 
-SearchStatus SpanSearch::SearchOn(const CellIndex& start, const CellIndex& goal, int max_expansions,
-                                  float max_cost) {
+SearchStatus SpanSearch::SearchOn(const CellIndex& start, const CellIndex& goal, bool out,
+                                  int max_expansions, float max_cost) {
   queue_.Clear();
   const int nx = columns_.size().x(), ny = columns_.size().y();
   const auto address = [&](int x, int y, int id) {
@@ -149,9 +173,12 @@ SearchStatus SpanSearch::SearchOn(const CellIndex& start, const CellIndex& goal,
     return straight + kDiagonal * static_cast<float>(std::min(dx, dy)) +
            vertical_cost_ * static_cast<float>(std::abs(z - goal.z()));
   };
-  const int start_id = columns_.IdAt(start), goal_id = columns_.IdAt(goal);
+  const int start_id = columns_.IdAt(start), goal_id = out ? 0 : columns_.IdAt(goal);
   if (start_id < 0 || goal_id < 0) return SearchStatus::kNoPath;  // a barrier closes an end
-  const std::uint32_t goal_address = address(goal.x(), goal.y(), goal_id);
+  const auto ends = [&](std::uint32_t here, int x, int y) {
+    if (out) return x == 0 || y == 0 || x == nx - 1 || y == ny - 1;
+    return here == address(goal.x(), goal.y(), goal_id);
+  };
   const auto see = [&](const Reached& at, float g, int from_id) {
     const float left = to_goal(at.x, at.y, at.z);
     if (g + left > max_cost) return;
@@ -176,8 +203,9 @@ SearchStatus SpanSearch::SearchOn(const CellIndex& start, const CellIndex& goal,
     node.closed = 1;
     const auto row = static_cast<int>(here) / nx;
     const int x = static_cast<int>(here) % nx, y = row % ny, id = row / ny, z = node.z;
-    if (here == goal_address) {
-      cost_ = node.g + vertical_cost_ * static_cast<float>(std::abs(z - goal.z()));
+    if (ends(here, x, y)) {
+      end_z_ = z;
+      cost_ = node.g + to_goal(out ? x : goal.x(), out ? y : goal.y(), z);
       TraceBack(x, y, id);
       return SearchStatus::kFound;
     }

@@ -40,6 +40,11 @@ class SpanSearch {
                       std::span<const Barrier> barriers = {},
                       double max_cost = std::numeric_limits<double>::infinity());
 
+  /// The same to a place that may be out of the window: then the path ends where it leaves the window, and the rest
+  /// costs as much as over nothing but free space.
+  SearchStatus SearchOut(const FreeSpace& space, const Eigen::Vector3d& from,
+                         const Eigen::Vector3d& to, int max_expansions, GuidePath* path);
+
   int expansions() const { return expansions_; }
   /// Of the path that was found last [m].
   double cost() const { return cost_; }
@@ -87,7 +92,10 @@ class SpanSearch {
     double z;
   };
 
-  SearchStatus SearchOn(const CellIndex& start, const CellIndex& goal, int max_expansions,
+  SearchStatus SearchFrom(const FreeSpace& space, CellIndex start, CellIndex goal, bool out,
+                          int max_expansions, GuidePath* path, std::span<const Barrier> barriers,
+                          double max_cost);
+  SearchStatus SearchOn(const CellIndex& start, const CellIndex& goal, bool out, int max_expansions,
                         float max_cost);
   void TraceBack(int x, int y, int id);
   void Straighten(double from, double to);
@@ -103,6 +111,7 @@ class SpanSearch {
   std::uint32_t search_ = 0;
   int expansions_ = 0;
   double cost_ = 0.0;
+  int end_z_ = 0;  // at which it ends [cells]
 };
 
 }  // namespace touchdown::planning

@@ -10,7 +10,7 @@ import pytest
 from touchdown_report import bspline, plan
 from touchdown_report.plan import PlanError
 
-STAGES = ["predict", "search", "pairs", "solve", "check", "certificate", "other"]
+STAGES = ["look", "predict", "search", "pairs", "solve", "check", "certificate", "other"]
 FIGURES = ("median_ms", "p95_ms", "p99_ms", "max_ms")
 SHORT = ("--set", "timeout=4")
 

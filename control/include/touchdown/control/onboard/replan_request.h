@@ -22,6 +22,7 @@ struct OnboardReplan {
   ReplanRequest request;
   estimation::PadState pad;  ///< the prediction at t_now
   double latency_s = 0.0;    ///< with which the plan is flown
+  planning::StageTimes::Span look{"look"};  ///< what the scout took before the step
   bool late = false;         ///< a new pair took over later than that
 };
 

@@ -119,13 +119,20 @@ struct StageTimes {
     double cpu = 0.0;   ///< of the thread [s]; NaN: entered, but no SpanLog listened
     long allocations =
         0;  ///< on the heap, where they are counted (touchdown/solvers/allocation_count.h)
+
+    void Add(const Span& more) {
+      wall += more.wall;
+      cpu += more.cpu;
+      allocations += more.allocations;
+    }
   };
+  Span look{"look"};  ///< of a scout, before the step; planners leave it alone
   Span predict{"predict"}, search{"search"}, pairs{"pairs"}, solve{"solve"}, check{"check"},
       certificate{"certificate"}, total{"total"};
 
   /// The stages without the total, in the order in which they come.
-  std::array<const Span*, 6> Stages() const {
-    return {&predict, &search, &pairs, &solve, &check, &certificate};
+  std::array<const Span*, 7> Stages() const {
+    return {&look, &predict, &search, &pairs, &solve, &check, &certificate};
   }
 };
 
