@@ -57,9 +57,8 @@ class Scout::Impl {
     const bool looks = look_ != nullptr;
     ForgetLongAgo(now, looks);
     if (looks) return look_->from;
-    if (!may_look || !IsLongAgo(was_.front(), now, false) || now.t < asked_t_ + kAsksEvery) {
-      return std::nullopt;
-    }
+    const bool asks = IsLongAgo(was_.front(), now, false) && now.t >= asked_t_ + kAsksEvery;
+    if (!may_look || !(climbs_ || asks)) return std::nullopt;
     asked_t_ = now.t;
     Search(input, cameras, map);
     if (look_ == nullptr) return std::nullopt;
@@ -112,6 +111,7 @@ class Scout::Impl {
                 input.t_start + options_.min_duration, options_.pad_radius, options_.contact_height,
                 &space);
     const HullSpace hull = HullFor(options_, space, input.margins.Sum(), DeckOf(input));
+    if (climbs_) return Climb(hull);
     const bool goal_moved = (now.goal_W - best_goal_W_).norm() > kNearer;
     const double there =
         goal_moved ? lookout_.Length(space, now.p_WB, best_goal_W_) : length_;
@@ -120,7 +120,8 @@ class Scout::Impl {
       best_ += length_ - there;
       best_goal_W_ = now.goal_W;
     }
-    if (ShallClimb(map)) return Climb(hull);
+    climbs_ = ShallClimb(map);
+    if (climbs_) return Climb(hull);
     if (progress) return;
     if (!lookout_.NoteNeeded(hull, now.p_WB)) return;
     look_ = lookout_.Choose(hull, cameras, input.vehicle, input.pull_W, struck_);
@@ -142,11 +143,18 @@ class Scout::Impl {
     return detour_ > most_detour_;
   }
 
+  /// As high as it can be seen to lead, and from there again.
   void Climb(const HullSpace& hull) {
     const Was& now = was_.back();
     look_ = lookout_.Highest(hull, now.p_WB, now.goal_W);
     if (look_ != nullptr && look_->from.p_WB.z() > now.p_WB.z() + kHigher) return;
-    look_ = nullptr;  // from here on the next way around
+    look_ = nullptr;
+    EndClimb();
+  }
+
+  /// From here on the next way around.
+  void EndClimb() {
+    climbs_ = false;
     up_ = true;
     detour_ = 0.0;
     most_detour_ *= 2.0;
@@ -182,6 +190,7 @@ class Scout::Impl {
     const bool stands =
         !near && IsLongAgo(then, now, true) && (then.p_WB - now.p_WB).norm() < kNearer;
     if (!in_vain && !stands && now.t < until_) return true;
+    if (climbs_ && !near) EndClimb();
     struck_.push_back(look_->from);
     return false;
   }
@@ -195,6 +204,7 @@ class Scout::Impl {
   Eigen::Vector3d best_goal_W_ = Eigen::Vector3d::Zero();  // ... with the goal here,
   double detour_ = 0.0;                                    // and what was flown since [m]
   double most_detour_ = kDetour;
+  bool climbs_ = false;              // that is what it looks for
   bool up_ = false;                  // as high as it could climb, for that best
   const Look* look_ = nullptr;       // nullptr: it flies to the goal
   double until_ = 0.0;               // it is to be over [s]
