@@ -141,6 +141,7 @@ struct Onboard::Parts {
     status.pad_known = options.to_goal || senses.pad().initialized();
     status.pad_sure = options.to_goal || senses.pad().Converged(t);
     status.plan_valid = pilot->plan_valid(t);
+    status.no_way = pilot->no_way();
   }
 
   OnboardOptions options;

@@ -315,6 +315,11 @@ const planning::ReplanResult& Pilot::Ask(bool for_plan, const estimation::PadFil
   return result;
 }
 
+std::optional<planning::NoWay> Pilot::no_way() const {
+  if (!parts_.scout) return std::nullopt;
+  return parts_.scout->no_way();
+}
+
 PilotCommand Pilot::Control(const OwnState& own) {
   const double t = own.now().t;
   PilotCommand command = Level(t);

@@ -79,6 +79,7 @@ class Pilot {
 
   const MissionOutputs& mission() const { return mission_; }
   const OnboardReplan& last_replan() const { return replan_; }
+  std::optional<planning::NoWay> no_way() const;
   /// What the landing planner remembers before its next step; empty with any other. Allocates.
   planning::ReplannerState replanner_state() const;
   bool plan_valid(double t) const;

@@ -119,6 +119,7 @@ class Trial {
         stay_(StayOf(scenario)),
         goal_(GoalOf(scenario)),
         limits_(scenario.limits),
+        ceiling_(scenario.planning.ceiling),
         landing_time_(LandingTimeTaskOf(scenario, world_)),
         judge_(LandingRule{}, scenario.timeout, stay_),
         stand_watch_(scenario.stand_limit),
@@ -155,6 +156,7 @@ class Trial {
     const control::Setpoint& setpoint = onboard_.Step(world_.time());
     NoteMode(vehicle.t);
     NotePlan(vehicle.t);
+    NoteNoWay(vehicle.t);
     solvers::AddThreadCpu(&result_.timing.physics_cpu_s, [&] { StepPhysics(setpoint.thrusts); });
     solvers::AddThreadCpu(&result_.timing.judging_cpu_s,
                           [&] { Judge(vehicle, pad, setpoint.saturated); });
@@ -193,6 +195,26 @@ class Trial {
       descent_hold_ = mission.descent_hold;
       Note(t, "descent", std::string(control::ToString(descent_hold_)));
     }
+  }
+
+  /// Where the widest way is narrowest is asked once, when the answer comes.
+  void NoteNoWay(double t) {
+    const std::optional<planning::NoWay>& no_way = onboard_.status().no_way;
+    if (no_way.has_value() == result_.no_way.has_value()) return;
+    if (!no_way) {
+      result_.no_way.reset();
+      return Note(t, "no_way", "over");
+    }
+    const planning::OccupancyMap& map = onboard_.map();
+    NoWayFigures& figures = result_.no_way.emplace();
+    figures = {no_way->since, no_way->looks, no_way->closed, {}, planning::LeastGap(map)};
+    const Eigen::Vector3d target =
+        task_ == TaskKind::kGoTo ? goal_.At(t).p_WP : onboard_.pad().Estimate(t).p_WP;
+    solvers::AddThreadCpu(&result_.timing.judging_cpu_s, [&] {
+      figures.narrowest =
+          planning::FindNarrowPlace(map, onboard_.own().p_WB, target, 0.0, ceiling_);
+    });
+    Note(t, "no_way", NoWaySentence(result_).substr(1));
   }
 
   void NotePlan(double t) {
@@ -364,6 +386,7 @@ class Trial {
           result_.outcome == Outcome::kLostPad || result_.outcome == Outcome::kInfeasible;
       if (too_late && !judge_.touchdown()) {
         result_.detail += NoPlanSentence(result_, no_plan_reason_);
+        result_.detail += NoWaySentence(result_);
         if (task_ != TaskKind::kGoTo && !result_.first_tag_s) {
           result_.detail += " No tag of the pad was ever seen.";
         }
@@ -440,6 +463,7 @@ class Trial {
   std::optional<HoldTask> stay_;
   planning::MovingGoal goal_;  ///< of the task go_to
   Scenario::Limits limits_;
+  double ceiling_;
   LandingTimeTask landing_time_;  ///< at the start
   LandingJudge judge_;
   StandWatch stand_watch_;

@@ -43,6 +43,21 @@ std::string NoPlanSentence(const TrialResult& result, std::string_view last) {
   return text + ".";
 }
 
+std::string NoWaySentence(const TrialResult& result) {
+  if (!result.no_way) return {};
+  const NoWayFigures& no_way = *result.no_way;
+  std::string text = fmt::format(
+      " From {:.1f} s on the vehicle knew no way: {}, after {} look{}.", no_way.since_s,
+      no_way.closed ? "what it had seen closes every one" : "what one needs is seen from nowhere",
+      no_way.looks, no_way.looks == 1 ? "" : "s");
+  if (!no_way.narrowest) return text;
+  const Eigen::Vector3d& at = no_way.narrowest->p_W;
+  return text + fmt::format(
+                    " The widest one is {:.1f} m wide at its narrowest place, [{:.1f}, {:.1f}, "
+                    "{:.1f}] m; {:.1f} m are needed.",
+                    no_way.narrowest->width, at.x(), at.y(), at.z(), no_way.needed_m);
+}
+
 std::string GateSentence(const TrialResult& result, std::string_view last) {
   const std::string open(control::ToString(control::Gate::kOpen));
   StepCounts closed = result.gate_steps;

@@ -15,6 +15,9 @@ std::string NoPlanSentence(const TrialResult& result, std::string_view last);
 
 /// What the landing condition lacked. `last`: how it was at the end. Begins with a space; empty if it was always open,
 /// or never asked for.
+/// ' The vehicle knew no way: ...'; empty if it did not say so.
+std::string NoWaySentence(const TrialResult& result);
+
 std::string GateSentence(const TrialResult& result, std::string_view last);
 
 }  // namespace touchdown::evaluation

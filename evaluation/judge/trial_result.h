@@ -12,6 +12,7 @@
 #include "evaluation/base/sensing_times.h"
 #include "evaluation/judge/landing_judge.h"
 #include "evaluation/judge/safety_watch.h"
+#include "touchdown/planning/look/no_way.h"
 
 namespace touchdown::evaluation {
 
@@ -48,6 +49,15 @@ struct PriorFigures {
   std::int64_t looked_at = 0;  ///< of these, those that were observed
   std::int64_t gone = 0;       ///< of these, those that are free
   std::int64_t appeared = 0;   ///< that the prior holds free and that are occupied
+};
+
+/// The vehicle's answer that it knows no way, where that stood at the end (planning::NoWay).
+struct NoWayFigures {
+  double since_s = 0.0;
+  int looks = 0;
+  bool closed = false;
+  std::optional<planning::NarrowPlace> narrowest;  ///< of the map's widest way
+  double needed_m = 0.0;                           ///< least width that a plan passes
 };
 
 /// Wall-clock figures of one trial. Nothing else depends on them.
@@ -107,6 +117,7 @@ struct TrialResult {
   bool within_limits = false;
   std::optional<SafetyFigures> safety;  ///< of a planner that flies by the safety rule
   std::optional<PriorFigures> prior;    ///< where the scenario has one
+  std::optional<NoWayFigures> no_way;   ///< as it stood at the end
   TrialTiming timing;
 
   bool landed() const { return outcome == Outcome::kLanded; }

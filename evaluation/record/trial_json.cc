@@ -77,6 +77,20 @@ Json PriorJson(const std::optional<PriorFigures>& prior) {
           {"new_cells", prior->appeared}};
 }
 
+Json NoWayJson(const std::optional<NoWayFigures>& no_way) {
+  if (!no_way) return nullptr;
+  Json json = {{"since_s", no_way->since_s},
+               {"looks", no_way->looks},
+               {"closed", no_way->closed},
+               {"narrowest", nullptr},
+               {"needed_m", no_way->needed_m}};
+  if (const auto& place = no_way->narrowest) {
+    json["narrowest"] = {{"position_m", {place->p_W.x(), place->p_W.y(), place->p_W.z()}},
+                         {"width_m", place->width}};
+  }
+  return json;
+}
+
 Json FollowingJson(const std::optional<Following>& following) {
   if (!following) return nullptr;
   return {{"mean_error_m", following->mean_error_m},
@@ -155,6 +169,7 @@ Json LandJson(const Scenario& scenario, const TrialResult& result) {
   json["own_state"] = OwnStateJson(result.own_state);
   json["safety"] = SafetyJson(result.safety);
   json["map_prior"] = PriorJson(result.prior);
+  json["no_way"] = NoWayJson(result.no_way);
   json["planner"] = scenario.planner;
   json["backend"] = scenario.solver_name();
   json["scenario"] = scenario.name;

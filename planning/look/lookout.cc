@@ -99,9 +99,9 @@ float& Lookout::CellNumbers::At(const CellIndex& cell) {
 
 double Lookout::Length(const FreeSpace& space, const Eigen::Vector3d& from,
                        const Eigen::Vector3d& goal) {
-  const bool found =
-      search_.SearchOut(space, from, goal, kMostSpans, &path_) == SearchStatus::kFound;
-  return found ? search_.cost() : std::numeric_limits<double>::infinity();
+  const SearchStatus status = search_.SearchOut(space, from, goal, kMostSpans, &path_);
+  closed_ = status == SearchStatus::kNoPath || status == SearchStatus::kEndsBlocked;
+  return status == SearchStatus::kFound ? search_.cost() : std::numeric_limits<double>::infinity();
 }
 
 double Lookout::Least(const OccupancyMap& map, const Eigen::Vector3d& from,

@@ -34,6 +34,9 @@ class Lookout {
   /// window. Where the goal is out of the window the way ends where it leaves it, and the rest is straight.
   double Length(const FreeSpace& space, const Eigen::Vector3d& from, const Eigen::Vector3d& goal);
 
+  /// Of the last Length: what is known to block closes every way. False: one was found, or the search gave up.
+  bool closed() const { return closed_; }
+
   /// The least that it can be: over nothing but free space.
   double Least(const OccupancyMap& map, const Eigen::Vector3d& from,
                const Eigen::Vector3d& goal) const;
@@ -95,6 +98,7 @@ class Lookout {
 
   double vertical_cost_;
   SpanSearch search_;
+  bool closed_ = false;
   CellNumbers numbers_;
   std::vector<Entry> queue_;
   GuidePath path_;

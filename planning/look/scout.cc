@@ -42,6 +42,8 @@ class Scout::Impl {
 
   void Prepare(const OccupancyMap& map) { lookout_.Prepare(map); }
 
+  const std::optional<NoWay>& no_way() const { return no_way_; }
+
   std::optional<Viewpoint> Step(const ReplanInput& input, const std::vector<LookCamera>& cameras,
                                 const OccupancyMap& map, bool may_look) {
     if (cameras.empty()) return std::nullopt;
@@ -122,10 +124,24 @@ class Scout::Impl {
     }
     climbs_ = ShallClimb(map);
     if (climbs_) return Climb(hull);
+    if (!std::isfinite(length_)) return NoteNoWay(lookout_.closed());
+    if (no_way_ && no_way_->closed) no_way_.reset();
     if (progress) return;
     if (!lookout_.NoteNeeded(hull, now.p_WB)) return;
     look_ = lookout_.Choose(hull, cameras, input.vehicle, input.pull_W, struck_);
-    if (look_ == nullptr) struck_.clear();  // all were tried: again
+    if (look_ != nullptr) {
+      ++looks_;
+      return;
+    }
+    struck_.clear();  // all were tried: again
+    if (++rounds_ > 1) NoteNoWay(false);
+  }
+
+  /// To a goal that stands.
+  void NoteNoWay(bool closed) {
+    const Was &then = was_.front(), &now = was_.back();
+    if ((now.goal_W - then.goal_W).norm() > kNearer) return no_way_.reset();
+    if (!no_way_) no_way_ = {now.t, looks_, closed};
   }
 
   /// Around an obstacle that has no end one way is as good as any: after as long a way as that, over it. A straight way
@@ -139,6 +155,8 @@ class Scout::Impl {
       detour_ = 0.0;
       most_detour_ = kDetour;
       up_ = false;
+      looks_ = rounds_ = 0;
+      no_way_.reset();
     }
     return detour_ > most_detour_;
   }
@@ -147,7 +165,10 @@ class Scout::Impl {
   void Climb(const HullSpace& hull) {
     const Was& now = was_.back();
     look_ = lookout_.Highest(hull, now.p_WB, now.goal_W);
-    if (look_ != nullptr && look_->from.p_WB.z() > now.p_WB.z() + kHigher) return;
+    if (look_ != nullptr && look_->from.p_WB.z() > now.p_WB.z() + kHigher) {
+      ++looks_;
+      return;
+    }
     look_ = nullptr;
     EndClimb();
   }
@@ -210,10 +231,14 @@ class Scout::Impl {
   double until_ = 0.0;               // it is to be over [s]
   std::optional<int> images_there_;  // used before the first one from there
   std::vector<Viewpoint> struck_;    // looked from in vain
+  int looks_ = 0, rounds_ = 0;       // since the last best, and how often none was left to try
+  std::optional<NoWay> no_way_;
 };
 
 Scout::Scout(const ReplannerOptions& options) : impl_(std::make_unique<Impl>(options)) {}
 Scout::~Scout() = default;
+
+const std::optional<NoWay>& Scout::no_way() const { return impl_->no_way(); }
 
 void Scout::Prepare(const OccupancyMap& map) { impl_->Prepare(map); }
 

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -18,6 +19,7 @@
 #include "touchdown/estimation/base/own_measurements.h"
 #include "touchdown/estimation/base/vehicle_state.h"
 #include "touchdown/estimation/pad/pad_arrival.h"
+#include "touchdown/planning/look/no_way.h"
 #include "touchdown/planning/spline/flatness.h"
 
 namespace touchdown::control {
@@ -48,6 +50,7 @@ struct OnboardStatus {
   bool pad_known = false;   ///< it has been measured; a goal always is
   bool pad_sure = false;    ///< ... well enough to land by
   bool plan_valid = false;  ///< what is flown is no older than the mission allows
+  std::optional<planning::NoWay> no_way;  ///< the scout knows no way to a target that stands
 };
 
 /// What was asked of the planner in the last Step; nullptr: nothing.

@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include "touchdown/estimation/base/measurements.h"
+#include "touchdown/planning/look/no_way.h"
 #include "touchdown/planning/map/occupancy_map.h"
 #include "touchdown/planning/replan/replan_result.h"
 
@@ -44,6 +45,10 @@ class Scout {
   /// @pre `input` has a pad or goal, and passes the replanner's checks. Does not allocate after Prepare, unless very much is struck off.
   std::optional<Viewpoint> Step(const ReplanInput& input, const std::vector<LookCamera>& cameras,
                                 const OccupancyMap& map, bool may_look);
+
+  /// It knows no way to the goal of the last Step, which stands, and has no place left to look from. It goes on: what is
+  /// seen may open one. Empty: a way is known, or it still looks.
+  const std::optional<NoWay>& no_way() const;
 
  private:
   class Impl;

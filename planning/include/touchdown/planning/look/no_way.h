@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+
+#include <Eigen/Core>
+
+#include "touchdown/planning/map/occupancy_map.h"
+
+namespace touchdown::planning {
+
+/// The answer of a scout that knows no way on.
+struct NoWay {
+  double since = 0.0;   ///< [s]
+  int looks = 0;        ///< how often it went to look since it was last nearer
+  bool closed = false;  ///< by what was seen; false: what a way needs is seen from nowhere
+};
+
+/// The narrowest place of a way.
+struct NarrowPlace {
+  Eigen::Vector3d p_W = Eigen::Vector3d::Zero();  ///< its middle [m]
+  double width = 0.0;  ///< of the free cells between occupied ones there, at most about kWidest [m]
+
+  static constexpr double kWidest = 3.0;
+};
+
+/// The least such width that a plan passes [m].
+double LeastGap(const OccupancyMap& map);
+
+/// The narrowest place of the widest way from here to there, through all that is not occupied, between floor and
+/// ceiling [m]. An end above or below the window counts as at its border. Empty: there is none, or an end is beside it. Takes a tenth of a second, and allocates: for
+/// when there is nothing else to do.
+std::optional<NarrowPlace> FindNarrowPlace(const OccupancyMap& map, const Eigen::Vector3d& from,
+                                           const Eigen::Vector3d& to, double floor, double ceiling);
+
+}  // namespace touchdown::planning
