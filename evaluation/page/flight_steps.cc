@@ -47,6 +47,7 @@ Json RecordedStep(const RecordPlan& plan) {
                {"reason", planning::ToString(result.reason)},
                {"curve", CurveOf(result.curve)},
                {"guides", PathsOf(result.guide_paths)},
+               {"look", input.look_from_W ? RoundedPoint(*input.look_from_W) : Json()},
                {"earlier", c.earlier},
                {"clearance", Rounded(c.clearance, kMilli)},
                {"solves", result.solves},
@@ -115,6 +116,7 @@ Json PairsOf(const planning::AttemptLog* winner, const SolvedStep& solved) {
 Json StagesOf(const planning::StageTimes& times) {
   Json json = Json::object();
   for (const planning::StageTimes::Span* stage : times.Stages()) {
+    if (stage == &times.look) continue;  // the scout is not asked again
     json[stage->stage] = Rounded(1e3 * stage->cpu, kMilli);
   }
   json["total"] = Rounded(1e3 * times.total.cpu, kMilli);

@@ -16,7 +16,7 @@ import { Timeline } from "./timeline.js";
 import { unpack } from "./unpack.js";
 import { Vehicle } from "./vehicle.js";
 import { VIEWS, Views } from "./views.js";
-import { Prior, makeGoal, makeWorld, makeZones } from "./world.js";
+import { Prior, makeGoal, makeNarrow, makeWorld, makeZones } from "./world.js";
 
 const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4];
 const CLICK = 9; // a plan is taken within so many pixels
@@ -44,8 +44,9 @@ class Shown {
     this.zones = makeZones(flight.document.zones);
     this.prior = new Prior(flight.document.prior, flight.document.map);
     this.goal = makeGoal();
+    this.narrow = makeNarrow(flight.document.result.no_way);
     for (const part of [this.vehicle, this.pad, this.map, this.plans, this.flown, this.reference, this.track]) scene.add(part.object);
-    scene.add(this.zones, this.prior.object, this.goal);
+    scene.add(this.zones, this.prior.object, this.goal, this.narrow);
     this.label = at("labels").appendChild(Object.assign(document.createElement("div"), { className: "label" }));
     this.label.style.setProperty("--colour", colour);
     this.on = { reference: true, zones: true, prior: true, flown: true, track: true };
@@ -64,6 +65,7 @@ class Shown {
     this.prior.object.visible = selected && on.prior;
     this.prior.update(flight.askedAt(t));
     this.goal.visible = Boolean(flight.goal);
+    this.narrow.visible = selected && t >= flight.document.result.no_way?.since_s;
     flight.aimAt(t, this.goal.position);
     this.plans.object.visible = selected;
     if (selected) this.plans.update(step);
@@ -176,6 +178,7 @@ class Replay {
       { name: "its stop", key: "s", colour: VERMILLION, mark: "dash", on: true, set: plan("stop") },
       { name: "rejected paths", key: "w", colour: GREY, mark: "dash", on: true, set: plan("lost") },
       { name: "guide paths", key: "g", colour: GREEN, mark: "dot", on: true, set: plan("guides") },
+      { name: "place to look from", key: "j", colour: PURPLE, mark: "cross", on: true, there: any((f) => f.steps.some(({ look }) => look)), set: plan("look") },
       { name: "half-spaces at obstacles", key: "i", colour: ORANGE, on: true, set: plan("pairs") },
       { name: "flown path", key: "f", colour: BLUE, on: true, set: each((shown, on) => (shown.on.flown = on)) },
       { name: "reference", key: "r", colour: GREEN, mark: "dash", on: true, set: each((shown, on) => (shown.on.reference = on)) },

@@ -6,6 +6,18 @@ import { DASH, DOT, Strokes, Way, pieces } from "./lines.js";
 import { sample } from "./spline.js";
 
 const ARROW = 0.3; // of a pair [m]
+const EYE = 0.2; // of a place to look from, from its middle [m]
+
+/** The edges of an octahedron. */
+function octahedron([x, y, z], size) {
+  const ring = [[size, 0], [0, size], [-size, 0], [0, -size]], ends = [];
+  ring.forEach(([dx, dy], i) => {
+    const [nx, ny] = ring[(i + 1) % 4];
+    ends.push(x + dx, y + dy, z, x + nx, y + ny, z);
+    for (const dz of [size, -size]) ends.push(x + dx, y + dy, z, x, y, z + dz);
+  });
+  return ends;
+}
 
 /** The curves of all new plans, in the order in which they were made; some are drawn by how many are past. */
 class AllPlans {
@@ -37,10 +49,11 @@ export class Plans {
     this.guides = new Strokes(GREEN, 2.5, DOT);
     this.pairs = new Strokes(ORANGE, 2);
     this.unseen = new Strokes(PURPLE, 2.5);
+    this.look = new Strokes(PURPLE, 2.5);
     this.object = new Group();
-    for (const part of [this.all, this.curve, this.stop, this.lost, this.guides, this.pairs, this.unseen]) this.object.add(part.object);
+    for (const part of [this.all, this.curve, this.stop, this.lost, this.guides, this.pairs, this.unseen, this.look]) this.object.add(part.object);
     this.step = null;
-    this.show = { all: true, plan: true, stop: true, lost: true, guides: true, pairs: true };
+    this.show = { all: true, plan: true, stop: true, lost: true, guides: true, pairs: true, look: true };
   }
 
   update(step) {
@@ -79,6 +92,7 @@ export class Plans {
       unseen.push(x - d, y, z, x + d, y, z, x, y - d, z, x, y + d, z, x, y, z - d, x, y, z + d);
     }
     this.unseen.set(unseen);
+    this.look.set(step?.look && show.look ? octahedron(step.look, EYE) : []);
   }
 
   /** The newest of the drawn plans, up to `current`, that is within `reach` pixels of a place in the picture; -1: none. */

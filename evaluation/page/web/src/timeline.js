@@ -8,6 +8,7 @@ const KINDS = {
   late: { colour: ORANGE, shape: "tick", words: "a step that took longer than its latency" },
   mode: { colour: BLACK, shape: "triangle", words: "mode" },
   descent: { colour: PURPLE, shape: "triangle", words: "descent" },
+  no_way: { colour: VERMILLION, shape: "diamond", words: "no way" },
   own_state: { colour: PURPLE, shape: "diamond", words: "own state" },
   contact: { colour: GREEN, shape: "diamond", words: "first contact" },
   outcome: { colour: BLACK, shape: "diamond", words: "outcome" },

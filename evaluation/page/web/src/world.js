@@ -5,7 +5,7 @@ import {
   LineBasicMaterial, LineSegments, Matrix4, Mesh, MeshBasicMaterial, MeshLambertMaterial, PlaneGeometry, RepeatWrapping, SphereGeometry,
   SRGBColorSpace,
 } from "three";
-import { GREEN, PURPLE, YELLOW } from "./colours.js";
+import { GREEN, PURPLE, VERMILLION, YELLOW } from "./colours.js";
 
 const BUILDING = "#C4BAAA", EDGE = "#7A7368", GROUND = "#F0F2EE", GRID = "#C3CAC2";
 const EXTENT = 400; // of the ground, a whole and even number [m]
@@ -167,6 +167,16 @@ export class Prior {
       mesh.count = count;
     }
   }
+}
+
+/** The narrowest place of the widest way, as a ball of that width, of a vehicle that knows no way; nothing of another. */
+export function makeNarrow(no_way) {
+  const narrow = new Group();
+  if (!no_way?.narrowest) return narrow;
+  const { position_m, width_m } = no_way.narrowest;
+  const ball = new Mesh(new SphereGeometry(width_m / 2, 24, 16), new MeshLambertMaterial({ color: VERMILLION, transparent: true, opacity: 0.6 }));
+  ball.position.set(...position_m);
+  return narrow.add(ball);
 }
 
 /** Where a flight of the task go_to leads. */
