@@ -17,7 +17,6 @@
 namespace touchdown::control {
 namespace {
 
-constexpr std::size_t kMostCameras = 8;  // depth cameras
 constexpr double kTagsGuide = 0.5;      // GPS is left out while tags are younger than this [s]
 constexpr double kMaxClockLead = 0.05;  // of the newest own state: no measurement is [s]
 // If only the hull's space is marked free at the start, no stop lies in free cells. A vehicle whose
@@ -108,7 +107,8 @@ Taken Senses::Take(const estimation::PadImage& image, double stamp) {
 
 Taken Senses::Take(const estimation::DepthImage& image, double stamp) {
   if (!estimation::IsPossible(image)) return Taken::kInvalid;
-  if (const auto refused = Refused(stamp, images_)) return *refused;
+  const std::size_t camera = CameraOf(image);
+  if (const auto refused = Refused(stamp, images_[camera])) return *refused;
   if (!estimation::SaysSomething(image)) return Taken::kEmpty;
   const estimation::VehicleState from = own_.At(stamp);
   const Eigen::Matrix3d R_WB = from.q_WB.toRotationMatrix();
@@ -126,25 +126,29 @@ Taken Senses::Take(const estimation::DepthImage& image, double stamp) {
   if (pad_.initialized() && now.Known()) {
     map_.ExplainDoubts([&](double at) { return Outline(t, at); });
   }
-  images_.Add(stamp);
-  NoteCamera(image);
+  images_[camera].Add(stamp);
+  cameras_[camera].intrinsics = image.intrinsics;
+  cameras_[camera].reach =
+      std::min(image.max_range, map_.options().thinnest_obstacle * image.intrinsics.focal);
+  ++cameras_[camera].images;
   depth_t_ = std::max(depth_t_, stamp);
   return Taken::kUsed;
 }
 
-void Senses::NoteCamera(const estimation::DepthImage& image) {
-  const auto same = [&](const planning::LookCamera& camera) {
+// Which depth camera it is, by its place. A ninth takes the place of the oldest one.
+std::size_t Senses::CameraOf(const estimation::DepthImage& image) {
+  const auto known = std::find_if(cameras_.begin(), cameras_.end(), [&](const auto& camera) {
     return camera.p_BC == image.p_BC && camera.R_BC == image.R_BC;
-  };
-  auto known = std::find_if(cameras_.begin(), cameras_.end(), same);
-  if (known == cameras_.end()) {
-    if (cameras_.size() == kMostCameras) cameras_.erase(cameras_.begin());
-    known = cameras_.insert(cameras_.end(), {image.intrinsics, image.p_BC, image.R_BC, 0.0, 0});
+  });
+  const auto at = static_cast<std::size_t>(known - cameras_.begin());
+  if (known != cameras_.end()) return at;
+  if (at == kMostCameras) {
+    cameras_.erase(cameras_.begin());
+    std::rotate(images_.begin(), images_.begin() + 1, images_.end());
+    images_.back() = {};
   }
-  known->intrinsics = image.intrinsics;
-  known->reach =
-      std::min(image.max_range, map_.options().thinnest_obstacle * image.intrinsics.focal);
-  ++known->images;
+  cameras_.push_back({image.intrinsics, image.p_BC, image.R_BC, 0.0, 0});
+  return cameras_.size() - 1;
 }
 
 // Where the pad was at `stamp`, with its uncertainty of then and of today.

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -61,10 +63,12 @@ class Senses {
   void LogPadTo(std::vector<estimation::PadArrival>* log) { pad_log_ = log; }
 
  private:
+  static constexpr std::size_t kMostCameras = 8;  // depth cameras
+
   std::optional<Taken> Refused(double t, const Stamps& used) const;
   bool TagsGuide(double t) const;
   planning::PadOutline Outline(double t, double stamp) const;
-  void NoteCamera(const estimation::DepthImage& image);
+  std::size_t CameraOf(const estimation::DepthImage& image);
 
   OwnState own_;
   estimation::PadFilter pad_;
@@ -74,8 +78,9 @@ class Senses {
   double start_free_;
   bool doubts_ = false;
   bool pad_is_obstacle_;  // the goal is another than the pad
-  Stamps fixes_, sightings_, pad_images_, images_;
+  Stamps fixes_, sightings_, pad_images_;
   std::vector<planning::LookCamera> cameras_;
+  std::array<Stamps, kMostCameras> images_;  ///< of each
   double depth_t_ = 0.0;  // of the last depth image, or of Begin [s]
   PadSearch look_;
   estimation::DepthFrame frame_;

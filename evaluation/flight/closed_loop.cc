@@ -148,8 +148,10 @@ class Trial {
     perception_.Sense(world_, &onboard_);
     CheckTaken();
     if (perception_.image_taken()) stand_watch_.Image();
-    if (samples_ != nullptr && perception_.image_taken()) {
-      samples_->frames.push_back({world_.time(), perception_.frame_times()});
+    if (samples_ != nullptr) {
+      for (const FrameTimes& times : perception_.frame_times()) {
+        samples_->frames.push_back({world_.time(), times});
+      }
     }
     const estimation::VehicleState vehicle = world_.vehicle();
     const estimation::PadState pad = world_.pad();

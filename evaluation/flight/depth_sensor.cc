@@ -11,8 +11,8 @@ namespace {
 template <typename Camera>
 class CameraDepthSensor final : public DepthSensor {
  public:
-  CameraDepthSensor(const Scenario& scenario, std::uint64_t seed, Camera camera)
-      : DepthSensor(scenario, seed), camera_(std::move(camera)) {}
+  CameraDepthSensor(const Scenario& scenario, double rate, std::uint64_t seed, Camera camera)
+      : DepthSensor(scenario, rate, seed), camera_(std::move(camera)) {}
 
  private:
   void Capture(const estimation::VehicleState& vehicle, const estimation::PadState& pad,
@@ -33,17 +33,28 @@ class CameraDepthSensor final : public DepthSensor {
 
 }  // namespace
 
-sim::DepthCameraConfig DepthCameraOf(const Scenario& scenario) {
-  sim::DepthCameraConfig config;
-  config.width = scenario.depth.width;
-  config.height = scenario.depth.height;
-  config.max_range = scenario.depth.range;
-  config.range_noise = scenario.depth.noise;
-  return config;
+std::vector<MountedDepthCamera> DepthCamerasOf(const Scenario& scenario) {
+  MountedDepthCamera nose;
+  nose.config.width = scenario.depth.width;
+  nose.config.height = scenario.depth.height;
+  nose.config.max_range = scenario.depth.range;
+  nose.config.range_noise = scenario.depth.noise;
+  nose.rate = scenario.depth_rate;
+  if (scenario.depth.cameras.empty()) return {nose};
+  std::vector<MountedDepthCamera> cameras;
+  for (const DepthMount& mount : scenario.depth.cameras) {
+    MountedDepthCamera& camera = cameras.emplace_back(nose);
+    camera.config.p_BC = mount.position;
+    camera.config.yaw_deg = mount.yaw_deg;
+    camera.config.pitch_deg = mount.pitch_deg;
+    camera.config.fov_x_deg = mount.fov_deg;
+    camera.rate = mount.rate;
+  }
+  return cameras;
 }
 
-DepthSensor::DepthSensor(const Scenario& scenario, std::uint64_t seed)
-    : clock_(scenario.depth_rate),
+DepthSensor::DepthSensor(const Scenario& scenario, double rate, std::uint64_t seed)
+    : clock_(rate),
       delivery_({scenario.depth.latency_ms, scenario.depth.drop, scenario.depth.outage[0],
                  scenario.depth.outage[1]},
                 seed, "depth camera delivery") {}
@@ -61,19 +72,27 @@ void DepthSensor::Look(const estimation::VehicleState& vehicle, const estimation
   delivery_.Hold(vehicle.t, std::move(timed));
 }
 
-std::unique_ptr<DepthSensor> MakeDepthSensor(const Scenario& scenario,
-                                             const sim::WorldConfig& world, std::uint64_t seed) {
-  const sim::DepthCameraConfig config = DepthCameraOf(scenario);
-  if (scenario.sensing == SensingKind::kFast) {
-    return std::make_unique<CameraDepthSensor<sim::DepthCamera>>(
-        scenario, seed, sim::DepthCamera(config, world.obstacles, world.pad, seed));
-  }
+std::vector<std::unique_ptr<DepthSensor>> MakeDepthSensors(const Scenario& scenario,
+                                                           const sim::WorldConfig& world,
+                                                           std::uint64_t seed) {
   sim::VisualScene scene;
   scene.obstacles = world.obstacles;
   scene.pad = world.pad;
   scene.deck_height = scenario.pad.deck_height;
-  return std::make_unique<CameraDepthSensor<sim::RenderedDepthCamera>>(
-      scenario, seed, sim::RenderedDepthCamera(config, scene, seed));
+  std::vector<std::unique_ptr<DepthSensor>> sensors;
+  for (const MountedDepthCamera& camera : DepthCamerasOf(scenario)) {
+    const std::uint64_t own_seed = seed + sensors.size();  // each has noise and losses of its own
+    if (scenario.sensing == SensingKind::kFast) {
+      sensors.push_back(std::make_unique<CameraDepthSensor<sim::DepthCamera>>(
+          scenario, camera.rate, own_seed,
+          sim::DepthCamera(camera.config, world.obstacles, world.pad, own_seed)));
+    } else {
+      sensors.push_back(std::make_unique<CameraDepthSensor<sim::RenderedDepthCamera>>(
+          scenario, camera.rate, own_seed,
+          sim::RenderedDepthCamera(camera.config, scene, own_seed)));
+    }
+  }
+  return sensors;
 }
 
 }  // namespace touchdown::evaluation

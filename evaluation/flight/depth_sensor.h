@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "estimation/base/sample_clock.h"
 #include "evaluation/base/sensing_times.h"
@@ -26,7 +27,7 @@ struct TimedDepthImage {
   planning::StageTimes::Span sense{"sense"};
 };
 
-/// The depth camera at the nose. Images come at the camera's rate; some are dropped, and they arrive
+/// A depth camera. Images come at the camera's rate; some are dropped, and they arrive
 /// late, as the scenario says. Belongs to the thread that made it.
 class DepthSensor {
  public:
@@ -45,7 +46,8 @@ class DepthSensor {
   void Recycle(TimedDepthImage timed) { spare_ = std::move(timed); }
 
  protected:
-  DepthSensor(const Scenario& scenario, std::uint64_t seed);
+  /// @param rate of images [Hz].
+  DepthSensor(const Scenario& scenario, double rate, std::uint64_t seed);
 
  private:
   virtual void Capture(const estimation::VehicleState& vehicle, const estimation::PadState& pad,
@@ -56,11 +58,18 @@ class DepthSensor {
   TimedDepthImage spare_;
 };
 
-/// The depth camera of the scenario.
-sim::DepthCameraConfig DepthCameraOf(const Scenario& scenario);
+/// A depth camera of a scenario.
+struct MountedDepthCamera {
+  sim::DepthCameraConfig config;
+  double rate = 0.0;  ///< [Hz]
+};
 
-/// The sensor of the scenario's `sensing`; as MakePadSensor.
-std::unique_ptr<DepthSensor> MakeDepthSensor(const Scenario& scenario,
-                                             const sim::WorldConfig& world, std::uint64_t seed);
+/// The depth cameras of the scenario, one at least.
+std::vector<MountedDepthCamera> DepthCamerasOf(const Scenario& scenario);
+
+/// Their sensors, of the scenario's `sensing`; as MakePadSensor.
+std::vector<std::unique_ptr<DepthSensor>> MakeDepthSensors(const Scenario& scenario,
+                                                           const sim::WorldConfig& world,
+                                                           std::uint64_t seed);
 
 }  // namespace touchdown::evaluation

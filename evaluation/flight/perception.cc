@@ -27,7 +27,7 @@ Perception::Perception(const Scenario& scenario, const sim::World& world, std::u
     : own_(scenario, seed),
       gps_(GpsConfig(scenario), seed),
       pad_sensor_(MakePadSensor(scenario, world.config(), seed)),
-      depth_sensor_(MakeDepthSensor(scenario, world.config(), seed)) {
+      depth_sensors_(MakeDepthSensors(scenario, world.config(), seed)) {
   if (scenario.map_observed_free == ObservedFreeKind::kTruth) truth_ = world.config().obstacles;
 }
 
@@ -41,12 +41,12 @@ void Perception::Sense(const sim::World& world, control::Onboard* onboard) {
   const estimation::PadState pad = world.pad();
   SenseOwn(vehicle, onboard);
   SensePad(vehicle, pad, onboard);
-  depth_sensor_->Look(vehicle, pad, &sensing_times_);
+  for (const auto& sensor : depth_sensors_) sensor->Look(vehicle, pad, &sensing_times_);
   onboard->Take(world.foot_force());
   const double sensed = solvers::ThreadCpuSeconds();
   sensing_cpu_s_ += sensed - begin;
   SenseDepth(vehicle, onboard);
-  if (image_taken_) mapping_cpu_s_ += solvers::ThreadCpuSeconds() - sensed;
+  if (image_taken()) mapping_cpu_s_ += solvers::ThreadCpuSeconds() - sensed;
 }
 
 void Perception::SenseOwn(const estimation::VehicleState& vehicle, control::Onboard* onboard) {
@@ -78,19 +78,20 @@ void Perception::SensePad(const estimation::VehicleState& vehicle, const estimat
 }
 
 void Perception::SenseDepth(const estimation::VehicleState& vehicle, control::Onboard* onboard) {
-  image_taken_ = false;
-  while (auto timed = depth_sensor_->Poll(vehicle.t)) {
-    image_taken_ = true;
-    frame_times_ = {};
-    frame_times_.sense = timed->sense;
-    {
-      const planning::StageTimer timer(&frame_times_.map);
-      onboard->Take(timed->image);
+  frame_times_.clear();
+  for (const auto& sensor : depth_sensors_) {
+    while (auto timed = sensor->Poll(vehicle.t)) {
+      FrameTimes& times = frame_times_.emplace_back();
+      times.sense = timed->sense;
+      {
+        const planning::StageTimer timer(&times.map);
+        onboard->Take(timed->image);
+      }
+      if (truth_) {
+        ObserveTruth(*truth_, onboard->own().p_WB - vehicle.p_WB, onboard->mutable_map());
+      }
+      sensor->Recycle(std::move(*timed));
     }
-    if (truth_) {
-      ObserveTruth(*truth_, onboard->own().p_WB - vehicle.p_WB, onboard->mutable_map());
-    }
-    depth_sensor_->Recycle(std::move(*timed));
   }
 }
 

@@ -41,8 +41,8 @@ class Perception {
   bool pad_measured() const { return pad_measured_; }
 
   /// A depth image arrived in the last call of Sense, and what that cost.
-  bool image_taken() const { return image_taken_; }
-  const FrameTimes& frame_times() const { return frame_times_; }
+  bool image_taken() const { return !frame_times_.empty(); }
+  const std::vector<FrameTimes>& frame_times() const { return frame_times_; }
 
   /// Simulating sensors, and the filters.
   double sensing_cpu_s() const { return sensing_cpu_s_; }
@@ -58,12 +58,11 @@ class Perception {
   OwnSense own_;
   sim::PadGps gps_;
   std::unique_ptr<PadSensor> pad_sensor_;
-  std::unique_ptr<DepthSensor> depth_sensor_;
+  std::vector<std::unique_ptr<DepthSensor>> depth_sensors_;
   estimation::DepthImage image_;
   std::optional<sim::ObstacleField> truth_;  // stands in for what the depth camera sees free
   bool pad_measured_ = false;
-  bool image_taken_ = false;
-  FrameTimes frame_times_;
+  std::vector<FrameTimes> frame_times_;  ///< of the depth images of this step
   double sensing_cpu_s_ = 0.0;
   SensingTimes sensing_times_;
   double mapping_cpu_s_ = 0.0;

@@ -76,17 +76,17 @@ Eigen::Isometry3d DownCameraPose(const Scenario& scenario) {
 }
 
 Eigen::Isometry3d DepthCameraPose(const Scenario& scenario) {
-  const sim::DepthCameraConfig config = DepthCameraOf(scenario);
+  const sim::DepthCameraConfig config = DepthCamerasOf(scenario).front().config;
   return PoseOf(config.p_BC, Eigen::Quaterniond(sim::CameraAxes(config)));
 }
 
 FlightCameras::FlightCameras(const Scenario& scenario, const sim::VisualScene& scene)
     : down_(PadCameraOf(scenario), scene, scenario.seed),
-      depth_(DepthCameraOf(scenario), WithoutPlate(scene), scenario.seed),
+      depth_(DepthCamerasOf(scenario).front().config, WithoutPlate(scene), scenario.seed),
       down_rate_(RateOf(scenario.tag_rate, kMostGrayBytes, GrayBytes(scenario),
                         scenario.camera.width, scenario.camera.height)),
-      depth_rate_(RateOf(scenario.depth_rate, kMostDepthBytes, sizeof(std::uint16_t),
-                         scenario.depth.width, scenario.depth.height)) {}
+      depth_rate_(RateOf(DepthCamerasOf(scenario).front().rate, kMostDepthBytes,
+                         sizeof(std::uint16_t), scenario.depth.width, scenario.depth.height)) {}
 
 std::string FlightCameras::DownImage(const TrackSample& now) {
   down_.Capture(now.vehicle, now.pad, &gray_);

@@ -58,8 +58,7 @@ Json CameraJson(const char* name, const Eigen::Vector3d& p_BC, const Eigen::Matr
           {"range", range}};
 }
 
-Json DepthCameraJson(const Scenario& scenario) {
-  const sim::DepthCameraConfig config = DepthCameraOf(scenario);
+Json DepthCameraJson(const sim::DepthCameraConfig& config) {
   const double slope = std::tan(0.5 * config.fov_x_deg * estimation::kRadPerDeg);
   return CameraJson("depth", config.p_BC, sim::CameraAxes(config), slope,
                     slope * config.height / config.width, config.max_range);
@@ -114,7 +113,11 @@ Json VehicleDocument(const Scenario& scenario) {
   }
   json["rotor_radius"] = Rounded(sim::DrawnRotorRadius(model), 3);
   json["foot_depth"] = Rounded(model.foot_depth, 3);
-  json["cameras"] = {DepthCameraJson(scenario), PadCameraJson(scenario)};
+  Json& cameras = json["cameras"] = Json::array();
+  for (const MountedDepthCamera& camera : DepthCamerasOf(scenario)) {
+    cameras.push_back(DepthCameraJson(camera.config));
+  }
+  cameras.push_back(PadCameraJson(scenario));
   return json;
 }
 

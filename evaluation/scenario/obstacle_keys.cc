@@ -149,4 +149,22 @@ const ElementKeys<OctomapObstacle>& OctomapKeys() {
   return keys;
 }
 
+const ElementKeys<DepthMount>& DepthMountKeys() {
+  static const ElementKeys<DepthMount> keys = {
+      Optional(schema::Vector<3, DepthMount>("position", schema::In(-2, 2, "m"),
+                                             "of the camera in B: forward, left, up",
+                                             TOUCHDOWN_AT(position))),
+      Optional(schema::Number<DepthMount>("yaw_deg", schema::In(-180, 180, "deg"),
+                                          "of its axis, to the left of the nose",
+                                          TOUCHDOWN_AT(yaw_deg))),
+      Optional(schema::Number<DepthMount>("pitch_deg", schema::In(-90, 90, "deg"),
+                                          "of its axis, downward: 90 looks down",
+                                          TOUCHDOWN_AT(pitch_deg))),
+      Optional(schema::Number<DepthMount>("fov_deg", schema::In(10, 170, "deg"),
+                                          "horizontal field of view", TOUCHDOWN_AT(fov_deg))),
+      Optional(schema::Number<DepthMount>("rate", schema::Above(0, 100, "Hz"), "images a second",
+                                          TOUCHDOWN_AT(rate)))};
+  return keys;
+}
+
 }  // namespace touchdown::evaluation

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The lists under `obstacles` in a scenario, each once: its name, its elements, their keys.
+// The lists in a scenario, each once: its name, its elements, their keys.
 #pragma once
 
 #include <string>
@@ -19,6 +19,7 @@ const ElementKeys<WallObstacle>& WallKeys();
 const ElementKeys<MeshObstacle>& MeshKeys();
 const ElementKeys<HeightFieldObstacle>& HeightFieldKeys();
 const ElementKeys<OctomapObstacle>& OctomapKeys();
+const ElementKeys<DepthMount>& DepthMountKeys();
 
 /// Calls `visit(name, elements, keys)` for each list, in the order of the obstacles. `scenario` may be const.
 template <typename AScenario, typename Visit>
@@ -30,6 +31,13 @@ void ForEachObstacleList(AScenario& scenario, Visit&& visit) {
   visit("obstacles.meshes", scenario.meshes, MeshKeys());
   visit("obstacles.height_fields", scenario.height_fields, HeightFieldKeys());
   visit("obstacles.octomaps", scenario.octomaps, OctomapKeys());
+}
+
+/// The same for every list.
+template <typename AScenario, typename Visit>
+void ForEachList(AScenario& scenario, Visit&& visit) {
+  visit("depth.cameras", scenario.depth.cameras, DepthMountKeys());
+  ForEachObstacleList(scenario, visit);
 }
 
 }  // namespace touchdown::evaluation

@@ -62,7 +62,7 @@ class Reader {
     if (const auto key = FindScenarioKey(name, keys_)) {
       key->set(source_->scenario, value, where);
       source_->where[name] = where;
-    } else if (ReadObstacles(name, value, where)) {
+    } else if (ReadLists(name, value, where)) {
       return;
     } else if (IsGroup(name)) {
       ReadMap(value, name, where);
@@ -72,14 +72,13 @@ class Reader {
   }
 
  private:
-  bool ReadObstacles(const std::string& name, const YAML::Node& value, const Where& where) {
+  bool ReadLists(const std::string& name, const YAML::Node& value, const Where& where) {
     bool found = false;
-    ForEachObstacleList(source_->scenario,
-                        [&](const std::string& list, auto& elements, const auto& keys) {
-                          if (list != name) return;
-                          ReadList(name, value, where, keys, &elements);
-                          found = true;
-                        });
+    ForEachList(source_->scenario, [&](const std::string& list, auto& elements, const auto& keys) {
+      if (list != name) return;
+      ReadList(name, value, where, keys, &elements);
+      found = true;
+    });
     return found;
   }
 
@@ -299,6 +298,27 @@ Scenario ParseScenario(const std::string& text, const std::string& name, const s
   return Complete(ParseYaml(text, file), name, file, overrides, registries);
 }
 
+namespace {
+
+template <typename Element>
+std::string ListText(const std::string& name, const std::string& indent,
+                     const std::vector<Element>& elements, const ElementKeys<Element>& keys) {
+  if (elements.empty()) return {};
+  std::string text = indent + name + ":\n";
+  const Element usual;
+  for (const Element& element : elements) {
+    std::string line;
+    for (const SchemaKey<Element>& key : keys) {
+      if (key.optional && key.get(element) == key.get(usual)) continue;
+      line += (line.empty() ? "" : ", ") + key.name + ": " + key.get(element);
+    }
+    text += indent + "  - {" + line + "}\n";
+  }
+  return text;
+}
+
+}  // namespace
+
 std::string DumpScenario(const Scenario& scenario) {
   std::string text;
   std::string open_group;
@@ -313,21 +333,12 @@ std::string DumpScenario(const Scenario& scenario) {
     text += name + ": " + value + "\n";
   }
   text += DumpOpenKeys(scenario);
+  text += ListText("depth.cameras", "", scenario.depth.cameras, DepthMountKeys());
   std::string lists;
-  ForEachObstacleList(scenario,
-                      [&lists](const std::string& name, const auto& elements, const auto& keys) {
-                        if (elements.empty()) return;
-                        lists += "  " + name.substr(std::string(kObstacles).size() + 1) + ":\n";
-                        const typename std::decay_t<decltype(elements)>::value_type usual;
-                        for (const auto& element : elements) {
-                          std::string line;
-                          for (const auto& key : keys) {
-                            if (key.optional && key.get(element) == key.get(usual)) continue;
-                            line += (line.empty() ? "" : ", ") + key.name + ": " + key.get(element);
-                          }
-                          lists += "    - {" + line + "}\n";
-                        }
-                      });
+  ForEachObstacleList(
+      scenario, [&](const std::string& name, const auto& elements, const auto& keys) {
+        lists += ListText(name.substr(std::string(kObstacles).size() + 1), "  ", elements, keys);
+      });
   return lists.empty() ? text : text + kObstacles + ":\n" + lists;
 }
 

@@ -217,6 +217,12 @@ void CheckSensors(const ScenarioSource& source) {
   CheckOutage(source, "own.gps.outage", s.own.gps.outage);
   CheckOutage(source, "camera.outage", s.camera.outage);
   CheckOutage(source, "depth.outage", s.depth.outage);
+  constexpr std::size_t kMostCameras = 8;
+  if (s.depth.cameras.size() > kMostCameras) {
+    throw BadInput(fmt::format("{}: depth.cameras lists {} cameras, {} are allowed.",
+                               source.WhereOf("depth.cameras[0]").ToString(),
+                               s.depth.cameras.size(), kMostCameras));
+  }
   if (s.own_state == OwnStateKind::kEstimated && s.own.gps.rate <= 0.0 &&
       s.own.odometry.rate <= 0.0) {
     throw BadInput(fmt::format(

@@ -112,6 +112,14 @@ std::optional<SchemaKey<Scenario>> FindScenarioKey(const std::string& name,
   return FindOpenKey(name);
 }
 
+bool IsList(const std::string& name) {
+  bool found = false;
+  const Scenario none;
+  ForEachList(none,
+              [&](const std::string& list, const auto&, const auto&) { found |= list == name; });
+  return found;
+}
+
 bool IsOpenGroup(const std::string& name) {
   return name == "solver.options" || name == "terms" || Behind("terms.", name).size() == 1;
 }
@@ -206,14 +214,13 @@ std::string ScenarioKeysMarkdown(const Registries& registries) {
   tables.AddOpen("terms.<term>.<parameter>", "the term's", "as `touchdown list terms --json` says",
                  "a parameter of the term");
   const Scenario none;
-  ForEachObstacleList(
-      none, [&tables](const std::string& list, const auto& elements, const auto& keys) {
-        const typename std::decay_t<decltype(elements)>::value_type element;
-        for (const auto& key : keys) {
-          tables.Add(key, fmt::format("{}[].{}", list, key.name),
-                     key.optional ? fmt::format("`{}`", key.get(element)) : "required");
-        }
-      });
+  ForEachList(none, [&tables](const std::string& list, const auto& elements, const auto& keys) {
+    const typename std::decay_t<decltype(elements)>::value_type element;
+    for (const auto& key : keys) {
+      tables.Add(key, fmt::format("{}[].{}", list, key.name),
+                 key.optional ? fmt::format("`{}`", key.get(element)) : "required");
+    }
+  });
   return tables.Text();
 }
 

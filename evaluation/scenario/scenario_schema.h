@@ -34,6 +34,9 @@ std::vector<SchemaKey<Scenario>> ScenarioKeys(const Registries& registries);
 std::optional<SchemaKey<Scenario>> FindScenarioKey(const std::string& name,
                                                    const std::vector<SchemaKey<Scenario>>& keys);
 
+/// It is one of the lists (obstacle_keys.h).
+bool IsList(const std::string& name);
+
 /// `name` groups open keys.
 bool IsOpenGroup(const std::string& name);
 /// The parameters and the open keys that are set, as lines of YAML.

@@ -60,7 +60,7 @@ PictureArea DrawInset(const PictureArea& area, const std::string& title, const P
 
 CameraInsets::CameraInsets(const Scenario& scenario, const sim::VisualScene& scene)
     : pad_camera_(PadCameraOf(scenario), scene, scenario.seed),
-      depth_camera_(DepthCameraOf(scenario), Uncovered(scene), scenario.seed),
+      depth_camera_(DepthCamerasOf(scenario).front().config, Uncovered(scene), scenario.seed),
       pad_clock_(scenario.tag_rate),
       depth_clock_(scenario.depth_rate) {}
 

@@ -56,6 +56,7 @@ void Validate(const DepthCameraConfig& config) {
   estimation::CheckWithin("depth_camera.height", config.height, 1, 4096);
   estimation::CheckAbove("depth_camera.fov_x_deg", config.fov_x_deg, 0.0, 170.0);
   estimation::CheckAbove("depth_camera.max_range", config.max_range, 0.0, 100.0);
+  estimation::CheckWithin("depth_camera.yaw_deg", config.yaw_deg, -180.0, 180.0);
   estimation::CheckWithin("depth_camera.pitch_deg", config.pitch_deg, -90.0, 90.0);
   estimation::CheckWithin("depth_camera.range_noise", config.range_noise, 0.0, 0.5);
   estimation::CheckWithin("length of depth_camera.p_BC", config.p_BC.norm(), 0.0, 10.0);
@@ -78,7 +79,8 @@ Eigen::Matrix3d CameraAxes(const DepthCameraConfig& config) {
   R_BC.col(0) = -Eigen::Vector3d::UnitY();
   R_BC.col(1) = Eigen::Vector3d(-s, 0.0, -c);
   R_BC.col(2) = Eigen::Vector3d(c, 0.0, -s);
-  return R_BC;
+  const double yaw = estimation::Radians(config.yaw_deg);
+  return Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) * R_BC;
 }
 
 DepthCamera::DepthCamera(const DepthCameraConfig& config, const ObstacleField& obstacles,

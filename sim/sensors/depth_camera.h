@@ -15,14 +15,15 @@
 
 namespace touchdown::sim {
 
-/// Forward depth camera at the vehicle's nose. C: x right, y down, z along the optical axis.
+/// Depth camera, by default at the vehicle's nose, forward. C: x right, y down, z along the optical axis.
 struct DepthCameraConfig {
   int width = 80;                           ///< [pixel], in [1, 4096]
   int height = 60;                          ///< [pixel], in [1, 4096]
   double fov_x_deg = 90.0;                  ///< horizontal field of view [deg], in (0, 170]
   double max_range = 6.0;                   ///< along the ray [m], in (0, 100]
   Eigen::Vector3d p_BC = {0.10, 0.0, 0.0};  ///< camera in B [m]
-  double pitch_deg = 0.0;                   ///< optical axis below B's x axis [deg], in [-90, 90]
+  double yaw_deg = 0.0;                     ///< optical axis to the left of B's x axis [deg]
+  double pitch_deg = 0.0;                   ///< ... and below it [deg], in [-90, 90]
   double range_noise = 0.0;  ///< standard deviation of a range over the range, in [0, 0.5]
 };
 

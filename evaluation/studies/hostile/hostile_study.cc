@@ -38,7 +38,7 @@ bool Sets(const HostileOptions& options, const std::string& key) {
                      [&](const std::string& text) { return text.rfind(key + "=", 0) == 0; });
 }
 
-// Only single keys, because a fixed condition is identified by its key. Seeds and obstacles are the study's.
+// Only single keys and lists, because a fixed condition is identified by its key. Seeds and obstacles are the study's.
 void ApplySet(const HostileOptions& options, const Registries& registries, Scenario* scenario) {
   for (const std::string& text : options.set) {
     ApplyOverride(text, registries, scenario);  // says what is wrong with the name or the value
@@ -46,7 +46,7 @@ void ApplySet(const HostileOptions& options, const Registries& registries, Scena
     if (name == "seed" || name.rfind("obstacles", 0) == 0) {
       throw BadInput(fmt::format("--set {}: this study draws it for each flight.", text));
     }
-    if (!FindScenarioKey(name, ScenarioKeys(registries))) {
+    if (!FindScenarioKey(name, ScenarioKeys(registries)) && !IsList(name)) {
       throw BadInput(
           fmt::format("--set {}: {} is a group of keys; set them one by one.", text, name));
     }

@@ -28,6 +28,15 @@ enum class EndpointVelocityKind { kPad, kRest };
 enum class EndpointKind { kEliminated, kExplicit };
 enum class LimitsKind { kSoft, kHard };
 
+/// A depth camera on the vehicle.
+struct DepthMount {
+  Eigen::Vector3d position = {0.1, 0.0, 0.0};  ///< in B [m]
+  double yaw_deg = 0.0;                        ///< of its axis, to the left of the nose [deg]
+  double pitch_deg = 0.0;                      ///< ... and below it [deg]
+  double fov_deg = 90.0;                       ///< horizontal [deg]
+  double rate = 10.0;                          ///< [Hz]
+};
+
 /// A box, turned about its middle.
 struct BoxObstacle {
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();    ///< of its base in W [m]
@@ -146,7 +155,7 @@ struct Scenario {
     Eigen::Vector2d outage = Eigen::Vector2d::Zero();  ///< no image from first to second [s]
     double occlusion = 0.0;  ///< share of the pad's printed sheet that is covered
   } camera;
-  /// Depth camera.
+  /// Depth cameras.
   struct Depth {
     int width = 80;           ///< [pixel]
     int height = 60;          ///< [pixel]
@@ -155,6 +164,7 @@ struct Scenario {
     double latency_ms = 0.0;  ///< [ms]
     double drop = 0.0;        ///< probability of each image
     Eigen::Vector2d outage = Eigen::Vector2d::Zero();  ///< no image from first to second [s]
+    std::vector<DepthMount> cameras;                   ///< empty: one at the nose, at depth_rate
   } depth;
   SensingKind sensing = SensingKind::kFast;
   OwnStateKind own_state = OwnStateKind::kTrue;
