@@ -631,6 +631,25 @@ TEST(Onboard, AnImageIsPlacedWhereTheVehicleWasThen) {
   EXPECT_EQ(onboard.Take(image), Taken::kDoubled);
 }
 
+// Two cameras take their images at the same time; each image counts once.
+TEST(Onboard, EveryDepthCameraHasItsOwnImages) {
+  Onboard onboard = Hovering(2.0);
+  ToyWorld world;
+  world.vehicle = At(2.0);
+  const estimation::DepthImage ahead = world.Depth();
+  estimation::DepthImage down = ahead;
+  down.p_BC = {0.0, 0.0, -0.05};
+  down.R_BC = Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitY()) * ahead.R_BC;
+  EXPECT_EQ(onboard.Take(ahead), Taken::kUsed);
+  EXPECT_EQ(onboard.Take(down), Taken::kUsed);
+  EXPECT_EQ(onboard.Take(ahead), Taken::kDoubled);
+  EXPECT_EQ(onboard.Take(down), Taken::kDoubled);
+  for (int i = 1; i < 20; ++i) {  // more than are remembered
+    down.p_BC.x() = 0.01 * i;
+    EXPECT_EQ(onboard.Take(down), Taken::kUsed);
+  }
+}
+
 TEST(Onboard, AnImageThatIsNoneIsRefused) {
   Onboard onboard = Hovering(2.0);
   ToyWorld world;

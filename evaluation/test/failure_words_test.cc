@@ -25,6 +25,20 @@ TEST(FailureWords, TheReasonThatStoodMostIsNamedNotTheLast) {
             "most by reach.");
 }
 
+TEST(FailureWords, NoWayIsSaidWithWhatWasTried) {
+  TrialResult result;
+  EXPECT_EQ(NoWaySentence(result), "");
+  result.no_way = {12.34, 1, false, {}, 1.1};
+  EXPECT_EQ(NoWaySentence(result),
+            " From 12.3 s on the vehicle knew no way: what one needs is seen from nowhere, after 1 "
+            "look.");
+  result.no_way = {12.34, 4, true, planning::NarrowPlace{{4.0, 0.1, 0.7}, 0.9}, 1.1};
+  EXPECT_EQ(NoWaySentence(result),
+            " From 12.3 s on the vehicle knew no way: what it had seen closes every one, after 4 "
+            "looks. The widest one is 0.9 m wide at its narrowest place, [4.0, 0.1, 0.7] m; 1.1 m "
+            "are needed.");
+}
+
 TEST(FailureWords, WhatTheLandingConditionLackedMostAndAtTheEnd) {
   TrialResult result;
   EXPECT_EQ(GateSentence(result, "no_pad"), "");

@@ -254,6 +254,22 @@ TEST_F(ScenarioTest, ObstaclesAreCheckedKeyByKey) {
               HasSubstr("unknown key obstacles.boxes[0].yaw"));
 }
 
+TEST_F(ScenarioTest, DepthCamerasAreAList) {
+  const Scenario s = Load(
+      "depth:\n  rate: 8\n  cameras:\n    - {}\n    - {position: [0, 0, -0.1], yaw_deg: 180, "
+      "pitch_deg: 45, fov_deg: 60, rate: 5}\n");
+  ASSERT_EQ(s.depth.cameras.size(), 2u);
+  EXPECT_EQ(s.depth.cameras[1].yaw_deg, 180.0);
+  EXPECT_EQ(DumpScenario(Load(DumpScenario(s))), DumpScenario(s));
+  EXPECT_THAT(DumpScenario(s), HasSubstr("depth.cameras:\n  - {}\n  - {position: [0, 0, -0.1]"));
+  EXPECT_THAT(Refusal("depth:\n  cameras:\n    - {pitch: 3}\n"),
+              AllOf(HasSubstr(path_ + ":3"), HasSubstr("unknown key depth.cameras[0].pitch")));
+  EXPECT_THAT(Refusal("depth:\n  cameras:\n    - {fov_deg: 180}\n"), HasSubstr("[10, 170] deg"));
+  std::string nine = "depth:\n  cameras:\n";
+  for (int i = 0; i < 9; ++i) nine += "    - {}\n";
+  EXPECT_THAT(Refusal(nine), AllOf(HasSubstr(path_ + ":3"), HasSubstr("9 cameras, 8 are allowed")));
+}
+
 TEST_F(ScenarioTest, AnObstacleOnTheStartIsRefusedWithItsLine) {
   EXPECT_THAT(Refusal("obstacles:\n  boxes:\n"
                       "    - {centre: [20, 20], size: [1, 1, 4]}\n"

@@ -161,8 +161,10 @@ TEST(DepthSensor, DropsAndDelaysItsImages) {
   for (const char* kind : {"sensing=fast", "sensing=rendered"}) {
     const Scenario scenario =
         Open({kind, "depth.drop=0.5", "depth.latency_ms=150", "depth.width=40", "depth.height=30"});
-    const auto sensor = MakeDepthSensor(
+    const auto sensors = MakeDepthSensors(
         scenario, WorldOf(scenario, DrawTrial(scenario, 1), StandardRegistries()), 3);
+    ASSERT_EQ(sensors.size(), 1U);
+    DepthSensor* const sensor = sensors[0].get();
     SensingTimes times;
     int arrived = 0;
     for (int k = 0; k < 100; ++k) {

@@ -122,10 +122,10 @@ class Scout::Impl {
       best_ += length_ - there;
       best_goal_W_ = now.goal_W;
     }
+    if (no_way_ && no_way_->closed && std::isfinite(length_)) no_way_.reset();
     climbs_ = ShallClimb(map);
     if (climbs_) return Climb(hull);
     if (!std::isfinite(length_)) return NoteNoWay(lookout_.closed());
-    if (no_way_ && no_way_->closed) no_way_.reset();
     if (progress) return;
     if (!lookout_.NoteNeeded(hull, now.p_WB)) return;
     look_ = lookout_.Choose(hull, cameras, input.vehicle, input.pull_W, struck_);
@@ -150,13 +150,16 @@ class Scout::Impl {
     const Was& now = was_.back();
     if (!std::isfinite(length_)) return !up_;
     const bool straight = length_ < lookout_.Least(map, now.p_WB, now.goal_W) + kNearer;
-    if (straight || !(length_ >= best_ - kNearer)) {
+    const bool nearer = !(length_ >= best_ - kNearer);
+    if (nearer) {
       best_ = length_;
+      looks_ = rounds_ = 0;
+      no_way_.reset();
+    }
+    if (nearer || straight) {
       detour_ = 0.0;
       most_detour_ = kDetour;
       up_ = false;
-      looks_ = rounds_ = 0;
-      no_way_.reset();
     }
     return detour_ > most_detour_;
   }

@@ -98,10 +98,16 @@ void SpanSearch::Reserve(const OccupancyMap& map) {
   search_ = 0;
 }
 
+void SpanSearch::Forget(GuidePath* path) {
+  path->clear();
+  expansions_ = 0;
+  cost_ = 0.0;
+}
+
 SearchStatus SpanSearch::Search(const FreeSpace& space, const Eigen::Vector3d& from,
                                 const Eigen::Vector3d& to, int max_expansions, GuidePath* path,
                                 std::span<const Barrier> barriers, double max_cost) {
-  path->clear();
+  Forget(path);
   const OccupancyMap& map = *space.map;
   CellIndex goal = map.CellOf(to);
   if (!map.InWindow(goal)) return SearchStatus::kEndsOutside;
@@ -111,7 +117,7 @@ SearchStatus SpanSearch::Search(const FreeSpace& space, const Eigen::Vector3d& f
 
 SearchStatus SpanSearch::SearchOut(const FreeSpace& space, const Eigen::Vector3d& from,
                                    const Eigen::Vector3d& to, int max_expansions, GuidePath* path) {
-  path->clear();
+  Forget(path);
   const OccupancyMap& map = *space.map;
   CellIndex goal = map.CellOf(to);
   const int level = goal.z(), lowest = map.origin().z();
@@ -128,8 +134,6 @@ SearchStatus SpanSearch::SearchOut(const FreeSpace& space, const Eigen::Vector3d
 SearchStatus SpanSearch::SearchFrom(const FreeSpace& space, CellIndex start, CellIndex goal,
                                     bool out, int max_expansions, GuidePath* path,
                                     std::span<const Barrier> barriers, double max_cost) {
-  expansions_ = 0;
-  cost_ = 0.0;
   const OccupancyMap& map = *space.map;
   if (!map.InWindow(start)) return SearchStatus::kEndsOutside;
   if (!GridSearch::NearestFree(space, &start)) return SearchStatus::kEndsBlocked;

@@ -92,6 +92,7 @@ class SpanSearch {
     double z;
   };
 
+  void Forget(GuidePath* path);
   SearchStatus SearchFrom(const FreeSpace& space, CellIndex start, CellIndex goal, bool out,
                           int max_expansions, GuidePath* path, std::span<const Barrier> barriers,
                           double max_cost);

@@ -156,6 +156,82 @@ TEST_F(Scouted, AfterALongDetourItClimbs) {
   EXPECT_NEAR(look_->yaw, 0.0, 1.0) << "it faces the wall";
 }
 
+/// As high as the window, and round about: from 3 m to 3.2 m off.
+void CloseIn(OccupancyMap* map) {
+  for (double a = -3.15; a <= 3.25; a += 0.1) {
+    for (double z = 0.05; z < 5.3; z += 0.1) {
+      for (const double b : {-3.05, 3.15}) {
+        map->SetOccupied({a, b, z});
+        map->SetOccupied({b, a, z});
+      }
+    }
+  }
+}
+
+TEST_F(Scouted, WhereWhatWasSeenClosesEveryWayThereIsNone) {
+  map_.MarkRestFree();
+  CloseIn(&map_);
+  int step = 0;
+  while (step < 300 && !scout_.no_way()) {
+    look_ = Step();
+    if (look_) GoThere();  // it climbs first
+    ++step;
+  }
+  ASSERT_TRUE(scout_.no_way());
+  EXPECT_TRUE(scout_.no_way()->closed);
+  EXPECT_GE(scout_.no_way()->since, 2.5);
+  EXPECT_LE(scout_.no_way()->since, t_);
+  for (int y = -7; y < 8; ++y) {  // a door opens
+    for (int z = 0; z < 54; ++z) map_.SetState({31, y, z}, CellState::kFree);
+  }
+  for (int i = 0; i < 10; ++i) Step();
+  EXPECT_FALSE(scout_.no_way());
+}
+
+TEST_F(Scouted, ThereIsAWayToAGoalThatMoves) {
+  map_.MarkRestFree();
+  CloseIn(&map_);
+  pad_ = std::make_unique<MovingGoal>([](const Taylor& t) {
+    return MovingGoal::Position{8.0 + 0.0 * t, 0.05 + 0.4 * t, 2.05 + 0.0 * t};
+  });
+  for (int i = 0; i < 200; ++i) {
+    look_ = Step();
+    if (look_) GoThere();
+    EXPECT_FALSE(scout_.no_way()) << "it may come out by itself";
+  }
+}
+
+// What is needed is seen from nowhere: nothing is in the camera's reach.
+TEST_F(Scouted, WhereNothingHelpsThereIsNoWaySeen) {
+  cameras_[0].reach = 0.2;
+  for (int i = 0; i < 100 && !scout_.no_way(); ++i) Step();
+  ASSERT_TRUE(scout_.no_way());
+  EXPECT_FALSE(scout_.no_way()->closed);
+  EXPECT_EQ(scout_.no_way()->looks, 0);
+}
+
+TEST_F(Scouted, AfterALongDetourItClimbsForAGoalThatMoves) {
+  map_.MarkRestFree();
+  for (double y = -13.0; y < 13.0; y += 0.1) {
+    for (double z = 0.05; z < 5.3; z += 0.1) map_.SetOccupied({3.05, y, z});
+  }
+  pad_ = std::make_unique<MovingGoal>([](const Taylor& t) {
+    return MovingGoal::Position{8.0 + 0.0 * t, 0.05 + 0.2 * t, 2.05 + 0.0 * t};
+  });
+  int step = 0;
+  while (step < 400 && !look_) look_ = Step({0.0, step++ / 30 % 2 == 0 ? 1.0 : -1.0, 0.0});
+  ASSERT_TRUE(look_);
+  EXPECT_GT(look_->p_WB.z(), p_.z() + 0.5);
+}
+
+// Away from a goal to which nothing is in the way: no detour, however long.
+TEST_F(Scouted, NoClimbWhereTheWayIsStraight) {
+  map_.MarkRestFree();
+  for (int i = 0; i < 400; ++i) {
+    EXPECT_FALSE(Step({0.0, i / 30 % 2 == 0 ? 1.0 : -1.0, 0.0})) << t_;
+  }
+}
+
 // A turn on the spot takes longer than the patience.
 TEST_F(Scouted, WhoTurnsIsNotGivenUp) {
   FirstLook();

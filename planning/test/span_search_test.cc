@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "planning/search/span_search.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include <gtest/gtest.h>
@@ -168,6 +169,43 @@ TEST(SpanSearch, NamesWhatStopsIt) {
   EXPECT_EQ(search.expansions(), 0);
   Fill(&map, {-3.2, -3.2, -1.6}, {3.2, 3.2, 1.6});
   EXPECT_EQ(search.Search(space, {-1, 0, 0}, {1, 0, 0}, 1000, &path), SearchStatus::kEndsBlocked);
+}
+
+// A wall ahead, open at one side: the way leaves the window there, not where the straight line would.
+TEST(SpanSearch, AWayOutLeavesTheWindowWhereItCan) {
+  OccupancyMap map(SmallMap(0.1));
+  Fill(&map, {2.0, -3.2, -1.6}, {2.3, 2.0, 1.6});
+  const FreeSpace space = SpaceOf(map);
+  SpanSearch search(kPlain);
+  GuidePath path;
+  const Eigen::Vector3d from(0.05, 0.05, 0.05), goal(100.05, 0.05, 0.05);
+  ASSERT_EQ(search.SearchOut(space, from, goal, kEnough, &path), SearchStatus::kFound);
+  const bool around =
+      std::any_of(path.begin(), path.end(), [](const Eigen::Vector3d& p) { return p.y() > 2.0; });
+  EXPECT_TRUE(around);
+  EXPECT_NEAR(path.back().x(), 3.15, 1e-9);
+  EXPECT_GT(search.cost(), 100.0);
+  EXPECT_LT(search.cost(), 103.0);
+  Fill(&map, {2.0, 2.0, -1.6}, {2.3, 3.2, 1.6});
+  ASSERT_EQ(search.SearchOut(space, from, goal, kEnough, &path), SearchStatus::kFound)
+      << "through a side of the window";
+  EXPECT_LT(path.back().x(), 2.0);
+  const double here = search.cost();
+  ASSERT_EQ(search.SearchOut(space, from, {1.05, 0.05, 0.05}, kEnough, &path),
+            SearchStatus::kFound);
+  EXPECT_NEAR(search.cost(), 1.0, 1e-3) << "as Search within the window";
+  EXPECT_GT(here, 100.0);
+}
+
+TEST(SpanSearch, AWayDownOutOfTheWindowEndsAtItsLowestCells) {
+  OccupancyMap map(SmallMap(0.1));
+  const FreeSpace space = SpaceOf(map);
+  SpanSearch search(kPlain);
+  GuidePath path;
+  ASSERT_EQ(search.SearchOut(space, {0.05, 0.05, 0.05}, {1.05, 0.05, -4.95}, kEnough, &path),
+            SearchStatus::kFound);
+  EXPECT_NEAR(search.cost(), 1.0 + 2.0 * 5.0, 1e-3);
+  EXPECT_NEAR(path.back().z(), -1.55, 1e-9);
 }
 
 TEST(SpanSearch, ABlockedEndIsMovedAndOneColumnIsAWay) {

@@ -108,7 +108,8 @@ void FuzzReplanner(std::string_view bytes) {
     if (choices.Below(8) == 0) AddObstacle(&choices, &map);
     if (choices.Below(4) == 0) map.MarkFree(at.p_WB, choices.In(0.3, 3.0));
     if (choices.Below(8) == 0) map.Recentre(at.p_WB);
-    RequireFinite(replanner.Reference(t + choices.Wild(0.0, 5.0)));
+    const double later = t + choices.Wild(0.0, 5.0);
+    if (!std::isnan(later)) RequireFinite(replanner.Reference(later));
   }
 }
 
