@@ -374,7 +374,9 @@ class Trial {
     result_.outcome = *judge_.outcome();
     result_.touchdown = judge_.touchdown();
     result_.simulated_s = world_.time();
-    if (!result_.succeeded()) {
+    if (result_.succeeded()) {
+      result_.no_way.reset();
+    } else {
       result_.detail = Explain(result_.outcome);
       if (const auto& touchdown = judge_.touchdown()) {
         const std::string broken = Broken(LandingRule(), *touchdown);

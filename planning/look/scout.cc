@@ -125,7 +125,7 @@ class Scout::Impl {
     if (no_way_ && no_way_->closed && std::isfinite(length_)) no_way_.reset();
     climbs_ = ShallClimb(map);
     if (climbs_) return Climb(hull);
-    if (!std::isfinite(length_)) return NoteNoWay(lookout_.closed());
+    if (lookout_.closed()) return NoteNoWay(true);
     if (progress) return;
     if (!lookout_.NoteNeeded(hull, now.p_WB)) return;
     look_ = lookout_.Choose(hull, cameras, input.vehicle, input.pull_W, struck_);

@@ -576,10 +576,7 @@ void Replanner::TakeOverAt(double t) {
   impl_->TakeOverAt(t);
 }
 
-FlatState Replanner::Reference(double t) const {
-  if (std::isnan(t)) throw std::invalid_argument("Replanner: Reference(NaN), it takes a time");
-  return impl_->InForce(t).At(t);
-}
+FlatState Replanner::Reference(double t) const { return impl_->InForce(t).At(t); }
 
 const ReplannerOptions& Replanner::options() const { return impl_->options_; }
 

@@ -242,17 +242,6 @@ class FaultyPad : public ArcPad {
   double acceleration_;
 };
 
-TEST(Replanner, ATimeThatIsNoneIsTheCallersMistake) {
-  Replanner replanner(Options(ArrivalMode::kFixed), solvers::StandardBackends());
-  replanner.CommitHover({0.0, 0.0, 2.0}, 0.0);
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THROW(replanner.Reference(nan), std::invalid_argument);
-  EXPECT_THROW(replanner.TakeOverAt(nan), std::invalid_argument);
-  for (const double t : {-1e300, 1e300, std::numeric_limits<double>::infinity()}) {
-    EXPECT_TRUE(replanner.Reference(t).p_WB.isApprox(Eigen::Vector3d(0.0, 0.0, 2.0))) << t;
-  }
-}
-
 TEST(Replanner, NamesWhyThereIsNoPlan) {
   const ArcPad pad({5.0, 0.0, 0.3}, 0.5, 0.0, 0.0);
   const ArcPad racing({5.0, 0.0, 0.3}, 6.0, 0.0, 0.0);

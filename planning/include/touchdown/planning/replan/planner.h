@@ -40,8 +40,7 @@ class Planner {
   /// before it is flown. No step may be asked for before t.
   virtual void TakeOverAt(double t) = 0;
 
-  /// The committed reference at time t (yaw fields zero). Does not allocate. A Replanner throws std::invalid_argument
-  /// where t is no number.
+  /// The committed reference at time t (yaw fields zero), NaN at a t that is NaN. Does not allocate.
   virtual FlatState Reference(double t) const = 0;
 };
 
