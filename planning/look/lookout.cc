@@ -24,6 +24,10 @@ constexpr double kFlies = 1.0, kTurns = 1.2,
                  kStays = 0.6;                      // [m/s], [rad/s], [s]: what a look takes
 constexpr double kSamePlace = 0.4, kSameYaw = 0.5;  // of a struck one [m], [rad]
 
+double Distance(const OccupancyMap& map, const CellIndex& cell, const Eigen::Vector3d& p) {
+  return ((map.CentreOf(cell) - p).array().abs() - 0.5 * map.resolution()).max(0.0).matrix().norm();
+}
+
 /// Calls visit(cell) for the cells of the hull's ball at p that were not seen free and are not the deck's. Ends where
 /// it returns false; whether none did.
 template <class Visit>
@@ -45,8 +49,7 @@ bool ForEachUnseen(const HullSpace& hull, const Eigen::Vector3d& p, Visit&& visi
       if (inside) missing &= ~map.ObservedFreeRow(first, count);
       for (; missing != 0; missing &= missing - 1) {
         const CellIndex cell = first + CellIndex(std::countr_zero(missing), 0, 0);
-        const Eigen::Array3d off = ((map.CentreOf(cell) - p).array().abs() - 0.5 * side).max(0.0);
-        if (off.matrix().squaredNorm() < radius * radius && !visit(cell)) return false;
+        if (Distance(map, cell, p) < radius && !visit(cell)) return false;
       }
     }
   }
@@ -157,15 +160,19 @@ void Lookout::Flood(const HullSpace& hull, const Place& from) {
 
 void Lookout::Flood(const HullSpace& hull, const Place& from, int stride) {
   const OccupancyMap& map = *hull.space->map;
-  const double side = stride * map.resolution(), at_start = hull.radius() + kSweepRoom;
+  const double side = stride * map.resolution();
   const std::size_t most = places_.size() + kMostPlaces;
   const auto place = [&](const CellIndex& node) -> Eigen::Vector3d {
     return from.p_W + side * node.cast<double>();
   };
+  // Where the vehicle is it may be, and it may leave (Sweep in swept_hull.cc has the same rule).
+  const auto was_there = [&](const CellIndex& cell, const Eigen::Vector3d& p) {
+    const double at_begin = Distance(map, cell, begin_.p_W);
+    return at_begin < hull.radius() && Distance(map, cell, p) >= at_begin;
+  };
   const auto fits = [&](const Eigen::Vector3d& p) {
     return !hull.space->Blocked(p) && ForEachUnseen(hull, p, [&](const CellIndex& cell) {
-      // Where the vehicle is it may be.
-      return !map.IsOccupied(cell) && (map.CentreOf(cell) - begin_.p_W).norm() < at_start;
+      return !map.IsOccupied(cell) && was_there(cell, p);
     });
   };
   // Of a place: how far it is, or that the hull does not fit.
@@ -192,6 +199,8 @@ void Lookout::Flood(const HullSpace& hull, const Place& from, int stride) {
       if (known == CellNumbers::kNone && !fits(there)) known = kClosed;
       const float way = at.way + static_cast<float>(side * step.cast<double>().norm());
       if (way >= known || hull.space->Blocked(between)) continue;
+      // Beside the vehicle cells may be unseen that its camera passed.
+      if (at.node.isZero() && !fits(between)) continue;
       known = way;
       queue_.push_back({way, at.node + step});
       std::push_heap(queue_.begin(), queue_.end(), farther);
