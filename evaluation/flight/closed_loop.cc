@@ -199,23 +199,28 @@ class Trial {
     }
   }
 
-  /// Where the widest way is narrowest is asked once, when the answer comes.
+  /// Where the widest way is narrowest is asked once, when the answer comes. One that is wide enough may only be out of
+  /// sight: then nothing is claimed.
   void NoteNoWay(double t) {
     const std::optional<planning::NoWay>& no_way = onboard_.status().no_way;
-    if (no_way.has_value() == result_.no_way.has_value()) return;
+    if (no_way.has_value() == no_way_said_) return;
+    no_way_said_ = no_way.has_value();
     if (!no_way) {
-      result_.no_way.reset();
-      return Note(t, "no_way", "over");
+      if (result_.no_way) Note(t, "no_way", "over");
+      return result_.no_way.reset();
     }
     const planning::OccupancyMap& map = onboard_.map();
-    NoWayFigures& figures = result_.no_way.emplace();
-    figures = {no_way->since, no_way->looks, no_way->closed, {}, planning::LeastGap(map)};
+    NoWayFigures figures = {
+        no_way->since, no_way->looks, no_way->closed, {}, planning::LeastGap(map)};
     const Eigen::Vector3d target =
         task_ == TaskKind::kGoTo ? goal_.At(t).p_WP : onboard_.pad().Estimate(t).p_WP;
     solvers::AddThreadCpu(&result_.timing.judging_cpu_s, [&] {
       figures.narrowest =
           planning::FindNarrowPlace(map, onboard_.own().p_WB, target, 0.0, ceiling_);
     });
+    const bool narrow = figures.narrowest && figures.narrowest->width < figures.needed_m;
+    if (!figures.closed && !narrow) return;
+    result_.no_way = figures;
     Note(t, "no_way", NoWaySentence(result_).substr(1));
   }
 
@@ -468,6 +473,7 @@ class Trial {
   planning::MovingGoal goal_;  ///< of the task go_to
   Scenario::Limits limits_;
   double ceiling_;
+  bool no_way_said_ = false;      ///< by the vehicle
   LandingTimeTask landing_time_;  ///< at the start
   LandingJudge judge_;
   StandWatch stand_watch_;
