@@ -75,10 +75,6 @@ void DepthSensor::Look(const estimation::VehicleState& vehicle, const estimation
 std::vector<std::unique_ptr<DepthSensor>> MakeDepthSensors(const Scenario& scenario,
                                                            const sim::WorldConfig& world,
                                                            std::uint64_t seed) {
-  sim::VisualScene scene;
-  scene.obstacles = world.obstacles;
-  scene.pad = world.pad;
-  scene.deck_height = scenario.pad.deck_height;
   std::vector<std::unique_ptr<DepthSensor>> sensors;
   for (const MountedDepthCamera& camera : DepthCamerasOf(scenario)) {
     const std::uint64_t own_seed = seed + sensors.size();  // each has noise and losses of its own
@@ -87,6 +83,10 @@ std::vector<std::unique_ptr<DepthSensor>> MakeDepthSensors(const Scenario& scena
           scenario, camera.rate, own_seed,
           sim::DepthCamera(camera.config, world.obstacles, world.pad, own_seed)));
     } else {
+      sim::VisualScene scene;
+      scene.obstacles = world.obstacles;
+      scene.pad = world.pad;
+      scene.deck_height = scenario.pad.deck_height;
       sensors.push_back(std::make_unique<CameraDepthSensor<sim::RenderedDepthCamera>>(
           scenario, camera.rate, own_seed,
           sim::RenderedDepthCamera(camera.config, scene, own_seed)));

@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 
 #include "evaluation/flight/closed_loop.h"
-#include "evaluation/record/trial_json.h"
 #include "touchdown/evaluation/scenario/scenario.h"
 
 namespace touchdown::evaluation {

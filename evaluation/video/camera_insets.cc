@@ -62,7 +62,7 @@ CameraInsets::CameraInsets(const Scenario& scenario, const sim::VisualScene& sce
     : pad_camera_(PadCameraOf(scenario), scene, scenario.seed),
       depth_camera_(DepthCamerasOf(scenario).front().config, Uncovered(scene), scenario.seed),
       pad_clock_(scenario.tag_rate),
-      depth_clock_(scenario.depth_rate) {}
+      depth_clock_(DepthCamerasOf(scenario).front().rate) {}
 
 void CameraInsets::Look(const TrackSample& now) {
   if (pad_clock_.Due(now.vehicle.t)) LookDown(now);

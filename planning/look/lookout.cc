@@ -65,7 +65,8 @@ bool IsStruck(const Viewpoint& view, const std::vector<Viewpoint>& struck) {
 
 }  // namespace
 
-Lookout::Lookout(double vertical_cost) : vertical_cost_(vertical_cost), search_({.vertical = vertical_cost}) {
+Lookout::Lookout(double vertical_cost)
+    : vertical_cost_(vertical_cost), search_({.vertical = vertical_cost}) {
   path_.reserve(kUsualPath);
   needed_.reserve(kUsualNeeded);
   places_.reserve(2 * kMostPlaces);

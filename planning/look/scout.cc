@@ -64,6 +64,7 @@ class Scout::Impl {
     asked_t_ = now.t;
     Search(input, cameras, map);
     if (look_ == nullptr) return std::nullopt;
+    ++looks_;
     was_.clear();
     was_.push_back(now);
     until_ = now.t + look_->way / kSlowest + kLonger;
@@ -115,8 +116,7 @@ class Scout::Impl {
     const HullSpace hull = HullFor(options_, space, input.margins.Sum(), DeckOf(input));
     if (climbs_) return Climb(hull);
     const bool goal_moved = (now.goal_W - best_goal_W_).norm() > kNearer;
-    const double there =
-        goal_moved ? lookout_.Length(space, now.p_WB, best_goal_W_) : length_;
+    const double there = goal_moved ? lookout_.Length(space, now.p_WB, best_goal_W_) : length_;
     const bool progress = MadeProgress(space);
     if (goal_moved) {
       best_ += length_ - there;
@@ -129,10 +129,7 @@ class Scout::Impl {
     if (progress) return;
     if (!lookout_.NoteNeeded(hull, now.p_WB)) return;
     look_ = lookout_.Choose(hull, cameras, input.vehicle, input.pull_W, struck_);
-    if (look_ != nullptr) {
-      ++looks_;
-      return;
-    }
+    if (look_ != nullptr) return;
     struck_.clear();  // all were tried: again
     if (++rounds_ > 1) NoteNoWay(false);
   }
@@ -168,10 +165,7 @@ class Scout::Impl {
   void Climb(const HullSpace& hull) {
     const Was& now = was_.back();
     look_ = lookout_.Highest(hull, now.p_WB, now.goal_W);
-    if (look_ != nullptr && look_->from.p_WB.z() > now.p_WB.z() + kHigher) {
-      ++looks_;
-      return;
-    }
+    if (look_ != nullptr && look_->from.p_WB.z() > now.p_WB.z() + kHigher) return;
     look_ = nullptr;
     EndClimb();
   }

@@ -381,7 +381,8 @@ std::optional<Eigen::Vector3d> Replanner::Impl::NeededNext(const ReplanInput& in
   const UniformBspline& curve = next_.curve;
   const double t_from = input.t_start + reaction_;
   if (curve.t_end() <= t_from) return std::nullopt;
-  return SweepHull(curve, t_from, curve.t_end(), {curve.Position(t_from), t_from}, hull, kAnyTime).unseen_W;
+  return SweepHull(curve, t_from, curve.t_end(), {curve.Position(t_from), t_from}, hull, kAnyTime)
+      .unseen_W;
 }
 
 const ReplanResult& Replanner::Impl::Rest(const ReplanInput& input, double climb,
