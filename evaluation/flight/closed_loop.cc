@@ -199,8 +199,7 @@ class Trial {
     }
   }
 
-  /// Where the widest way is narrowest is asked once, when the answer comes. One that is wide enough may only be out of
-  /// sight: then nothing is claimed.
+  /// Where the widest way is narrowest is asked once, when the answer comes.
   void NoteNoWay(double t) {
     const std::optional<planning::NoWay>& no_way = onboard_.status().no_way;
     if (no_way.has_value() == no_way_said_) return;
@@ -210,17 +209,13 @@ class Trial {
       return result_.no_way.reset();
     }
     const planning::OccupancyMap& map = onboard_.map();
-    NoWayFigures figures = {
-        no_way->since, no_way->looks, no_way->closed, {}, planning::LeastGap(map)};
+    result_.no_way = {no_way->since, no_way->looks, {}, planning::LeastGap(map)};
     const Eigen::Vector3d target =
         task_ == TaskKind::kGoTo ? goal_.At(t).p_WP : onboard_.pad().Estimate(t).p_WP;
     solvers::AddThreadCpu(&result_.timing.judging_cpu_s, [&] {
-      figures.narrowest =
+      result_.no_way->narrowest =
           planning::FindNarrowPlace(map, onboard_.own().p_WB, target, 0.0, ceiling_);
     });
-    const bool narrow = figures.narrowest && figures.narrowest->width < figures.needed_m;
-    if (!figures.closed && !narrow) return;
-    result_.no_way = figures;
     Note(t, "no_way", NoWaySentence(result_).substr(1));
   }
 

@@ -47,9 +47,9 @@ std::string NoWaySentence(const TrialResult& result) {
   if (!result.no_way) return {};
   const NoWayFigures& no_way = *result.no_way;
   std::string text = fmt::format(
-      " From {:.1f} s on the vehicle knew no way: {}, after {} look{}.", no_way.since_s,
-      no_way.closed ? "what it had seen closes every one" : "what one needs is seen from nowhere",
-      no_way.looks, no_way.looks == 1 ? "" : "s");
+      " From {:.1f} s on the vehicle knew no way: after {} look{}, what it had seen closes every "
+      "one.",
+      no_way.since_s, no_way.looks, no_way.looks == 1 ? "" : "s");
   if (!no_way.narrowest) return text;
   const Eigen::Vector3d& at = no_way.narrowest->p_W;
   return text + fmt::format(

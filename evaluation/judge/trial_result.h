@@ -55,7 +55,6 @@ struct PriorFigures {
 struct NoWayFigures {
   double since_s = 0.0;
   int looks = 0;
-  bool closed = false;
   std::optional<planning::NarrowPlace> narrowest;  ///< of the map's widest way
   double needed_m = 0.0;                           ///< least width that a plan passes
 };

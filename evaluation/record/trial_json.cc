@@ -81,7 +81,6 @@ Json NoWayJson(const std::optional<NoWayFigures>& no_way) {
   if (!no_way) return nullptr;
   Json json = {{"since_s", no_way->since_s},
                {"looks", no_way->looks},
-               {"closed", no_way->closed},
                {"narrowest", nullptr},
                {"needed_m", no_way->needed_m}};
   if (const auto& place = no_way->narrowest) {

@@ -28,14 +28,14 @@ TEST(FailureWords, TheReasonThatStoodMostIsNamedNotTheLast) {
 TEST(FailureWords, NoWayIsSaidWithWhatWasTried) {
   TrialResult result;
   EXPECT_EQ(NoWaySentence(result), "");
-  result.no_way = {12.34, 1, false, {}, 1.1};
+  result.no_way = {12.34, 1, {}, 1.1};
   EXPECT_EQ(NoWaySentence(result),
-            " From 12.3 s on the vehicle knew no way: what one needs is seen from nowhere, after 1 "
-            "look.");
-  result.no_way = {12.34, 4, true, planning::NarrowPlace{{4.0, 0.1, 0.7}, 0.9}, 1.1};
+            " From 12.3 s on the vehicle knew no way: after 1 look, what it had seen closes every "
+            "one.");
+  result.no_way = {12.34, 4, planning::NarrowPlace{{4.0, 0.1, 0.7}, 0.9}, 1.1};
   EXPECT_EQ(NoWaySentence(result),
-            " From 12.3 s on the vehicle knew no way: what it had seen closes every one, after 4 "
-            "looks. The widest one is 0.9 m wide at its narrowest place, [4.0, 0.1, 0.7] m; 1.1 m "
+            " From 12.3 s on the vehicle knew no way: after 4 looks, what it had seen closes every "
+            "one. The widest one is 0.9 m wide at its narrowest place, [4.0, 0.1, 0.7] m; 1.1 m "
             "are needed.");
 }
 

@@ -12,14 +12,15 @@
 namespace touchdown::planning {
 namespace {
 
-constexpr int kMostSpans = 60000;       // that a search expands
+constexpr int kMostSpans = 150000;      // that a search expands: more than a window mostly has
 constexpr double kBetweenBalls = 0.15;  // along the way [m]
 constexpr double kSoon = 1.5;           // cells so far along it are worth a third of the first [m]
 constexpr std::size_t kMostNeeded = 600;  // cells
 constexpr std::size_t kUsualPath = 512, kUsualNeeded = 40000, kUsualNumbers = 200000,
                       kUsualCameras = 8;
 constexpr int kStrides[] = {4, 2, 1};  // cells between places
-constexpr std::size_t kManyPlaces = 500, kMostPlaces = 2000, kMostTried = 500, kMostTraced = 40;
+constexpr std::size_t kManyPlaces = 500, kMostPlaces = 2000, kMostTried = 500;
+constexpr std::size_t kSample = 200;  // needed cells, by which places are compared
 constexpr double kFlies = 1.0, kTurns = 1.2,
                  kStays = 0.6;                      // [m/s], [rad/s], [s]: what a look takes
 constexpr double kSamePlace = 0.4, kSameYaw = 0.5;  // of a struck one [m], [rad]
@@ -66,19 +67,30 @@ bool IsStruck(const Viewpoint& view, const std::vector<Viewpoint>& struck) {
 }  // namespace
 
 Lookout::Lookout(double vertical_cost)
-    : vertical_cost_(vertical_cost), search_({.vertical = vertical_cost}) {
-  path_.reserve(kUsualPath);
+    : vertical_cost_(vertical_cost),
+      search_({.vertical = vertical_cost}),
+      far_search_({.vertical = vertical_cost}) {
+  for (GuidePath* path : {&path_, &back_}) path->reserve(kUsualPath);
   needed_.reserve(kUsualNeeded);
   places_.reserve(2 * kMostPlaces);
   candidates_.reserve(2 * kMostTried);
   queue_.reserve(27 * kMostPlaces);
   sights_.reserve(kUsualCameras);
-  for (Look* look : {&best_, &tried_}) look->cells.reserve(kMostNeeded + 1);
+  look_.cells.reserve(kMostNeeded + 1);
+  seen_.reserve(kMostNeeded + 1);
 }
 
-void Lookout::Prepare(const OccupancyMap& map) {
+void Lookout::Prepare(const FreeSpace& space) {
+  const OccupancyMap& map = *space.map;
   search_.Reserve(map);
   numbers_.Begin(map);
+  far_.emplace(map, space.floor);
+  far_search_.Reserve(far_->map());
+}
+
+void Lookout::Keep(const FreeSpace& space) {
+  if (!far_) Prepare(space);
+  far_->Keep(*space.map);
 }
 
 void Lookout::CellNumbers::Begin(const OccupancyMap& map) {
@@ -103,9 +115,40 @@ float& Lookout::CellNumbers::At(const CellIndex& cell) {
 
 double Lookout::Length(const FreeSpace& space, const Eigen::Vector3d& from,
                        const Eigen::Vector3d& goal) {
-  const SearchStatus status = search_.SearchOut(space, from, goal, kMostSpans, &path_);
-  closed_ = status == SearchStatus::kNoPath || status == SearchStatus::kEndsBlocked;
-  return status == SearchStatus::kFound ? search_.cost() : std::numeric_limits<double>::infinity();
+  status_ = search_.SearchOut(space, from, goal, kMostSpans, &path_);
+  leaves_ = search_.leaves();
+  return status_ == SearchStatus::kFound ? search_.cost() : std::numeric_limits<double>::infinity();
+}
+
+double Lookout::FarLength(const FreeSpace& space, const Eigen::Vector3d& from,
+                          const Eigen::Vector3d& goal) {
+  FreeSpace far = space;
+  far.map = &far_->map();
+  const SearchStatus status = far_search_.SearchOut(far, from, goal, kMostSpans, &back_);
+  // It may have missed a passage: then what the window holds must do.
+  const bool missed = far_search_.leaves() && far.map->InWindow(far.map->CellOf(goal));
+  if (status != SearchStatus::kFound || missed) return Length(space, from, goal);
+  // Within the window the way is as it is there, to where the other leaves it.
+  const OccupancyMap& map = *space.map;
+  const auto last = std::find_if(back_.begin(), back_.end(), [&](const Eigen::Vector3d& p) {
+    return !map.InWindow(map.CellOf(p));
+  });
+  if (last == back_.begin()) return Length(space, from, goal);
+  status_ = search_.Search(space, from, *(last - 1), kMostSpans, &path_);
+  if (status_ != SearchStatus::kFound) return Length(space, from, goal);
+  leaves_ = last != back_.end();
+  return far_search_.cost();
+}
+
+bool Lookout::Closed(const FreeSpace& space, const Eigen::Vector3d& from,
+                     const Eigen::Vector3d& goal) {
+  if (status_ == SearchStatus::kFound && !leaves_) return false;
+  const auto is_enclosed = [&](const Eigen::Vector3d& p) {
+    if (!space.map->InWindow(space.map->CellOf(p))) return false;
+    const SearchStatus status = search_.Escape(space, p, kMostSpans);
+    return status == SearchStatus::kNoPath || status == SearchStatus::kEndsBlocked;
+  };
+  return is_enclosed(from) || is_enclosed(goal);
 }
 
 double Lookout::Least(const OccupancyMap& map, const Eigen::Vector3d& from,
@@ -138,7 +181,9 @@ bool Lookout::NoteNeeded(const HullSpace& hull, const Eigen::Vector3d& from) {
       along += length / steps;
       const Eigen::Vector3d p = before + (place - before) * i / steps;
       ForEachUnseen(hull, p, note);
-      if (needed_.empty()) seen_until_ = {p, along};
+      if (!needed_.empty()) continue;
+      seen_until_ = {p, along};
+      along_ = place - before;
     }
     before = place;
   }
@@ -209,6 +254,13 @@ void Lookout::Flood(const HullSpace& hull, const Place& from, int stride) {
   }
 }
 
+const Look* Lookout::Onwards() {
+  look_.from = {seen_until_.p_W, std::atan2(along_.y(), along_.x())};
+  look_.way = seen_until_.way;
+  look_.cells.clear();
+  return &look_;
+}
+
 const Look* Lookout::Highest(const HullSpace& hull, const Eigen::Vector3d& from,
                              const Eigen::Vector3d& goal) {
   begin_ = {from, 0.0};
@@ -218,15 +270,15 @@ const Look* Lookout::Highest(const HullSpace& hull, const Eigen::Vector3d& from,
   const auto lower = [](const Place& a, const Place& b) { return a.p_W.z() < b.p_W.z(); };
   const Place& highest = *std::max_element(places_.begin(), places_.end(), lower);
   const Eigen::Vector3d to = goal - highest.p_W;
-  best_.from = {highest.p_W, std::atan2(to.y(), to.x())};
-  best_.way = highest.way;
-  best_.cells.clear();
-  return &best_;
+  look_.from = {highest.p_W, std::atan2(to.y(), to.x())};
+  look_.way = highest.way;
+  look_.cells.clear();
+  return &look_;
 }
 
 void Lookout::FindCandidates(const HullSpace& hull, const std::vector<LookCamera>& cameras,
                              const estimation::VehicleState& vehicle, const Eigen::Vector3d& pull_W,
-                             const std::vector<Viewpoint>& struck) {
+                             const std::vector<Viewpoint>& struck, std::size_t apart) {
   const OccupancyMap& map = *hull.space->map;
   places_.clear();
   Flood(hull, begin_);
@@ -254,34 +306,31 @@ void Lookout::FindCandidates(const HullSpace& hull, const std::vector<LookCamera
     double worth = 0.0;
     for (const LookCamera& camera : cameras) {
       const Sight sight(camera, from, pull_W);
-      for (const Needed& needed : needed_) {
-        if (sight.Holds(map.CentreOf(needed.cell))) worth += needed.worth;
+      for (std::size_t k = 0; k < needed_.size(); k += apart) {
+        if (sight.Holds(map.CentreOf(needed_[k].cell))) worth += needed_[k].worth;
       }
     }
     if (worth > 0.0) candidates_.push_back({worth / time, from, place.way, time});
   }
   const auto better = [](const Candidate& a, const Candidate& b) { return a.worth > b.worth; };
-  const std::size_t kept = std::min(kMostTraced, candidates_.size());
-  std::partial_sort(candidates_.begin(), candidates_.begin() + static_cast<std::ptrdiff_t>(kept),
-                    candidates_.end(), better);
-  candidates_.resize(kept);
+  std::sort(candidates_.begin(), candidates_.end(), better);
 }
 
-/// What is in sight of the candidate; returns its worth over the time.
+/// Notes which of every so many needed cells are in sight of the candidate; returns their worth over the time.
 double Lookout::Trace(const OccupancyMap& map, const std::vector<LookCamera>& cameras,
-                      const Candidate& candidate, const Eigen::Vector3d& pull_W, Look* look) {
-  look->from = candidate.from;
-  look->way = candidate.way;
-  look->cells.clear();
+                      const Candidate& candidate, const Eigen::Vector3d& pull_W,
+                      std::size_t apart) {
+  seen_.clear();
   sights_.clear();
   for (const LookCamera& camera : cameras) sights_.emplace_back(camera, candidate.from, pull_W);
   double worth = 0.0;
-  for (const Needed& needed : needed_) {
+  for (std::size_t i = 0; i < needed_.size(); i += apart) {
+    const Needed& needed = needed_[i];
     const bool seen = std::any_of(sights_.begin(), sights_.end(), [&](const Sight& sight) {
       return sight.Holds(map.CentreOf(needed.cell)) && sight.Reaches(needed.cell, map);
     });
     if (!seen) continue;
-    look->cells.push_back(needed.cell);
+    seen_.push_back(needed.cell);
     worth += needed.worth / candidate.time;
   }
   return worth;
@@ -290,16 +339,24 @@ double Lookout::Trace(const OccupancyMap& map, const std::vector<LookCamera>& ca
 const Look* Lookout::Choose(const HullSpace& hull, const std::vector<LookCamera>& cameras,
                             const estimation::VehicleState& vehicle, const Eigen::Vector3d& pull_W,
                             const std::vector<Viewpoint>& struck) {
-  FindCandidates(hull, cameras, vehicle, pull_W, struck);
-  double best = 0.0;
+  const OccupancyMap& map = *hull.space->map;
+  const std::size_t apart = 1 + needed_.size() / kSample;
+  FindCandidates(hull, cameras, vehicle, pull_W, struck, apart);
+  const Candidate* best = nullptr;
+  double most = 0.0;
   for (const Candidate& candidate : candidates_) {
-    if (candidate.worth <= best) break;
-    const double worth = Trace(*hull.space->map, cameras, candidate, pull_W, &tried_);
-    if (worth <= best) continue;
-    best = worth;
-    std::swap(best_, tried_);
+    if (candidate.worth <= most) break;
+    const double worth = Trace(map, cameras, candidate, pull_W, apart);
+    if (worth <= most) continue;
+    most = worth;
+    best = &candidate;
   }
-  return best > 0.0 ? &best_ : nullptr;
+  if (best == nullptr) return nullptr;
+  Trace(map, cameras, *best, pull_W, 1);
+  look_.from = best->from;
+  look_.way = best->way;
+  look_.cells = seen_;
+  return &look_;
 }
 
 }  // namespace touchdown::planning

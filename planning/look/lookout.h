@@ -3,10 +3,12 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include "planning/look/far_memory.h"
 #include "planning/look/sight.h"
 #include "planning/search/span_search.h"
 #include "touchdown/planning/certify/swept_hull.h"
@@ -28,14 +30,24 @@ class Lookout {
   explicit Lookout(double vertical_cost);
 
   /// Makes room for maps with this one's window.
-  void Prepare(const OccupancyMap& map);
+  void Prepare(const FreeSpace& space);
 
-  /// The potential: what the shortest way over what is not known to block costs [m]. Infinite: there is none in the
-  /// window. Where the goal is out of the window the way ends where it leaves it, and the rest is straight.
+  /// Keeps what the window holds now, for FarLength.
+  void Keep(const FreeSpace& space);
+
+  /// The potential: what the shortest way over what is not known to block costs [m]. Where none leads to the goal within
+  /// the window it ends where it leaves that, and the rest is straight. Infinite: there is none.
   double Length(const FreeSpace& space, const Eigen::Vector3d& from, const Eigen::Vector3d& goal);
 
-  /// Of the last Length: what is known to block closes every way. False: one was found, or the search gave up.
-  bool closed() const { return closed_; }
+  /// Of the last Length: the way leaves the window.
+  bool leaves() const { return leaves_; }
+
+  /// The same, with all that was seen before: of a way that leaves the window.
+  double FarLength(const FreeSpace& space, const Eigen::Vector3d& from,
+                   const Eigen::Vector3d& goal);
+
+  /// What is known to block closes every way: around `from` or around the goal. @pre the last Length was between these
+  bool Closed(const FreeSpace& space, const Eigen::Vector3d& from, const Eigen::Vector3d& goal);
 
   /// The least that it can be: over nothing but free space.
   double Least(const OccupancyMap& map, const Eigen::Vector3d& from,
@@ -51,6 +63,9 @@ class Lookout {
                      const estimation::VehicleState& vehicle, const Eigen::Vector3d& pull_W,
                      const std::vector<Viewpoint>& struck);
 
+  /// The last place on the way to which cells lead that were seen free, turned along it. As Choose.
+  const Look* Onwards();
+
   /// The highest place to which cells lead that were seen free, turned to the goal. As Choose.
   const Look* Highest(const HullSpace& hull, const Eigen::Vector3d& from,
                       const Eigen::Vector3d& goal);
@@ -65,7 +80,7 @@ class Lookout {
     double way;  ///< to there [m]
   };
   struct Candidate {
-    double worth;  ///< of the needed cells in its image, over the time: nothing is between them
+    double worth;  ///< of a sample of needed cells in its image, over the time: nothing is between
     Viewpoint from;
     double way, time;  ///< [m], [s]
   };
@@ -75,9 +90,9 @@ class Lookout {
 
   void FindCandidates(const HullSpace& hull, const std::vector<LookCamera>& cameras,
                       const estimation::VehicleState& vehicle, const Eigen::Vector3d& pull_W,
-                      const std::vector<Viewpoint>& struck);
+                      const std::vector<Viewpoint>& struck, std::size_t apart);
   double Trace(const OccupancyMap& map, const std::vector<LookCamera>& cameras,
-               const Candidate& candidate, const Eigen::Vector3d& pull_W, Look* look);
+               const Candidate& candidate, const Eigen::Vector3d& pull_W, std::size_t apart);
 
   /// A number for each cell of the window, of which few are set.
   class CellNumbers {
@@ -98,17 +113,22 @@ class Lookout {
 
   double vertical_cost_;
   SpanSearch search_;
-  bool closed_ = false;
+  SpanSearch far_search_;
+  std::optional<FarMemory> far_;
+  SearchStatus status_ = SearchStatus::kNoPath;  // of the last Length, ...
+  bool leaves_ = false;                          // ... and of its way
   CellNumbers numbers_;
   std::vector<Entry> queue_;
-  GuidePath path_;
+  GuidePath path_, back_;
   std::vector<Needed> needed_;
   Place begin_,
       seen_until_;  ///< of the way: where it begins, and where its part ends that was seen
+  Eigen::Vector3d along_ = Eigen::Vector3d::Zero();  ///< its direction there
   std::vector<Place> places_;
   std::vector<Candidate> candidates_;
   std::vector<Sight> sights_;  ///< of the candidate at hand, one for each camera
-  Look best_, tried_;
+  std::vector<CellIndex> seen_;  ///< of the candidate at hand
+  Look look_;
 };
 
 }  // namespace touchdown::planning

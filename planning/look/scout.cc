@@ -9,6 +9,7 @@
 
 #include "planning/certify/pad_strip.h"
 #include "planning/look/lookout.h"
+#include "planning/replan/plan_end.h"
 #include "planning/replan/spaces.h"
 
 namespace touchdown::planning {
@@ -23,6 +24,8 @@ constexpr double kAtGoal = 0.3;     // [m]
 
 constexpr double kDetour = 15.0;  // flown without a new best: then over it [m]
 constexpr double kHigher = 0.5;   // is a climb [m]
+constexpr double kOnwards = 1.0;  // is worth to be followed before cells are looked for [m]
+constexpr double kPassesBy = 4.0;  // the places that it follows: they are not stops [m]
 constexpr std::size_t kUsualSteps = 1000, kUsualStruck = 100;
 
 constexpr double kNear = 0.3, kTurnedTo = 0.2;   // of a viewpoint [m], [rad]
@@ -40,14 +43,14 @@ class Scout::Impl {
     struck_.reserve(kUsualStruck);
   }
 
-  void Prepare(const OccupancyMap& map) { lookout_.Prepare(map); }
+  void Prepare(const OccupancyMap& map) { lookout_.Prepare(SpaceFor(options_, map)); }
 
   const std::optional<NoWay>& no_way() const { return no_way_; }
 
   std::optional<Viewpoint> Step(const ReplanInput& input, const std::vector<LookCamera>& cameras,
                                 const OccupancyMap& map, bool may_look) {
     if (cameras.empty()) return std::nullopt;
-    Was now = {input.t_now, 0, input.vehicle.p_WB, Goal(input)};
+    Was now = {input.t_now, 0, input.vehicle.p_WB, Goal(input, map)};
     for (const LookCamera& camera : cameras) now.images += camera.images;
     if (!was_.empty()) detour_ += (now.p_WB - was_.back().p_WB).norm();
     if (!was_.empty() && now.t > was_.back().t + kGap) Forget();
@@ -60,7 +63,7 @@ class Scout::Impl {
     ForgetLongAgo(now, looks);
     if (looks) return look_->from;
     const bool asks = IsLongAgo(was_.front(), now, false) && now.t >= asked_t_ + kAsksEvery;
-    if (!may_look || !(climbs_ || asks)) return std::nullopt;
+    if (!may_look || !(climbs_ || follows_ || asks)) return std::nullopt;
     asked_t_ = now.t;
     Search(input, cameras, map);
     if (look_ == nullptr) return std::nullopt;
@@ -96,12 +99,16 @@ class Scout::Impl {
   }
 
   /// Where the vehicle wants to be in the end: a descent that pauses wants to go on.
-  Eigen::Vector3d Goal(const ReplanInput& input) const {
+  Eigen::Vector3d Goal(const ReplanInput& input, const OccupancyMap& map) const {
     EndpointTarget end = input.endpoint;
+    const double t = input.t_start + options_.min_duration;
     if (end.may_touch(options_.contact_height)) {
       end.height = end.height_floor = options_.contact_height;
+    } else if (input.pad->has_deck()) {
+      end.height = LowerUnderRoof(SpaceFor(options_, map), input.pad->MeanAt(t).p_WP, end.height);
+      end.height_floor = std::min(end.height_floor, end.height);
     }
-    return EndStateAt(*input.pad, end, input.t_start + options_.min_duration).state.p;
+    return EndStateAt(*input.pad, end, t).state.p;
   }
 
   /// A place to look from, if there was no progress.
@@ -114,6 +121,7 @@ class Scout::Impl {
                 input.t_start + options_.min_duration, options_.pad_radius, options_.contact_height,
                 &space);
     const HullSpace hull = HullFor(options_, space, input.margins.Sum(), DeckOf(input));
+    lookout_.Keep(space);
     if (climbs_) return Climb(hull);
     const bool goal_moved = (now.goal_W - best_goal_W_).norm() > kNearer;
     const double there = goal_moved ? lookout_.Length(space, now.p_WB, best_goal_W_) : length_;
@@ -122,23 +130,32 @@ class Scout::Impl {
       best_ += length_ - there;
       best_goal_W_ = now.goal_W;
     }
-    if (no_way_ && no_way_->closed && std::isfinite(length_)) no_way_.reset();
     climbs_ = ShallClimb(map);
     if (climbs_) return Climb(hull);
-    if (lookout_.closed()) return NoteNoWay(true);
-    if (progress) return;
-    if (!lookout_.NoteNeeded(hull, now.p_WB)) return;
-    look_ = lookout_.Choose(hull, cameras, input.vehicle, input.pull_W, struck_);
-    if (look_ != nullptr) return;
-    struck_.clear();  // all were tried: again
-    if (++rounds_ > 1) NoteNoWay(false);
+    follows_ = follows_ && lookout_.leaves();
+    if (progress && !follows_) return no_way_.reset();
+    if (lookout_.Closed(space, now.p_WB, now.goal_W)) return NoteNoWay();
+    no_way_.reset();
+    if (!std::isfinite(length_)) return;
+    bool needs = lookout_.NoteNeeded(hull, now.p_WB);
+    follows_ = follows_ || (lookout_.leaves() && lookout_.Onwards()->way > kPassesBy);
+    if (follows_) {
+      length_ = lookout_.FarLength(space, now.p_WB, now.goal_W);
+      needs = lookout_.NoteNeeded(hull, now.p_WB);
+    }
+    if (follows_ && lookout_.Onwards()->way > kOnwards) {
+      look_ = lookout_.Onwards();
+    } else if (needs) {
+      look_ = lookout_.Choose(hull, cameras, input.vehicle, input.pull_W, struck_);
+      if (look_ == nullptr) struck_.clear();  // all were tried: again
+    }
   }
 
   /// To a goal that stands.
-  void NoteNoWay(bool closed) {
+  void NoteNoWay() {
     const Was &then = was_.front(), &now = was_.back();
     if ((now.goal_W - then.goal_W).norm() > kNearer) return no_way_.reset();
-    if (!no_way_) no_way_ = {now.t, looks_, closed};
+    if (!no_way_) no_way_ = {now.t, looks_};
   }
 
   /// Around an obstacle that has no end one way is as good as any: after as long a way as that, over it. A straight way
@@ -150,8 +167,8 @@ class Scout::Impl {
     const bool nearer = !(length_ >= best_ - kNearer);
     if (nearer) {
       best_ = length_;
-      looks_ = rounds_ = 0;
-      no_way_.reset();
+      looks_ = 0;
+      follows_ = false;
     }
     if (nearer || straight) {
       detour_ = 0.0;
@@ -178,13 +195,13 @@ class Scout::Impl {
     most_detour_ *= 2.0;
   }
 
-  /// The vehicle is nearer to where the goal was then, or to where it is now. Or no way is known at all.
+  /// The vehicle is nearer to where the goal was then, or to where it is now.
   bool MadeProgress(const FreeSpace& space) {
     const Was &then = was_.front(), &now = was_.back();
     const auto nearer = [&](const Eigen::Vector3d& goal) {
-      const double before = lookout_.Length(space, then.p_WB, goal);
+      const double before = then.t < now.t ? lookout_.Length(space, then.p_WB, goal) : 0.0;
       length_ = lookout_.Length(space, now.p_WB, goal);
-      return !std::isfinite(length_) || length_ < before - kNearer;
+      return length_ < before - kNearer;
     };
     const bool goal_moved = (now.goal_W - then.goal_W).norm() > kNearer;
     const bool to_then = goal_moved && nearer(then.goal_W);
@@ -196,11 +213,14 @@ class Scout::Impl {
     const auto unseen = std::count_if(
         look_->cells.begin(), look_->cells.end(),
         [&](const auto& cell) { return !map.IsObservedFree(cell) && !map.IsOccupied(cell); });
+    const Was &then = was_.front(), &now = was_.back();
+    const double left = (now.p_WB - look_->from.p_WB).norm();
+    if (look_->cells.empty() && !climbs_ && left < std::min(kPassesBy, 0.5 * look_->way))
+      return false;
     const auto cells = static_cast<double>(look_->cells.size());
     if (cells > 0.0 && static_cast<double>(unseen) <= kEnough * cells) return false;
-    const Was &then = was_.front(), &now = was_.back();
     const double turn = estimation::Yaw(input.vehicle.q_WB) - look_->from.yaw;
-    const bool near = (now.p_WB - look_->from.p_WB).norm() < kNear;
+    const bool near = left < kNear;
     if (near && std::abs(estimation::WrapAngle(turn)) < kTurnedTo && !images_there_) {
       images_there_ = now.images;
     }
@@ -209,6 +229,7 @@ class Scout::Impl {
         !near && IsLongAgo(then, now, true) && (then.p_WB - now.p_WB).norm() < kNearer;
     if (!in_vain && !stands && now.t < until_) return true;
     if (climbs_ && !near) EndClimb();
+    follows_ = follows_ && !look_->cells.empty();
     struck_.push_back(look_->from);
     return false;
   }
@@ -223,12 +244,13 @@ class Scout::Impl {
   double detour_ = 0.0;                                    // and what was flown since [m]
   double most_detour_ = kDetour;
   bool climbs_ = false;              // that is what it looks for
+  bool follows_ = false;             // or it follows the way out of the window
   bool up_ = false;                  // as high as it could climb, for that best
   const Look* look_ = nullptr;       // nullptr: it flies to the goal
   double until_ = 0.0;               // it is to be over [s]
   std::optional<int> images_there_;  // used before the first one from there
   std::vector<Viewpoint> struck_;    // looked from in vain
-  int looks_ = 0, rounds_ = 0;       // since the last best, and how often none was left to try
+  int looks_ = 0;                    // since the last best
   std::optional<NoWay> no_way_;
 };
 

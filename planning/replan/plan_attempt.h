@@ -68,9 +68,9 @@ class PlanAttempt {
   /// Makes room for searches on maps with this one's window.
   void Prepare(const OccupancyMap& map) { finder_.Prepare(map); }
 
-  /// All attempts until the next call share the step's budget, max_work.
-  void BeginStep() {
-    budget_.Refill(options_.max_work);
+  /// All attempts until the next call share the step's budget.
+  void BeginStep(int work) {
+    budget_.Refill(work);
     spent_ = false;
   }
   /// An attempt of this step ended because its budget was used up.

@@ -18,11 +18,11 @@
 #include "planning/replan/fallback.h"
 #include "planning/replan/fallback_ladder.h"
 #include "planning/replan/plan_attempt.h"
+#include "planning/replan/plan_end.h"
 #include "planning/replan/replan_checks.h"
 #include "planning/replan/spaces.h"
 #include "planning/search/timed_path.h"
 #include "touchdown/planning/replan/attempt_ladder.h"
-#include "touchdown/planning/replan/goal.h"
 #include "touchdown/planning/replan/stage_timer.h"
 #include "touchdown/planning/spline/rest_trajectory.h"
 
@@ -36,9 +36,6 @@ constexpr int kUsualPaths = 32;       // room for those of one step
 constexpr int kUsualPathPoints = 512;
 constexpr double kClockRounding = 1e-6;  // [s]
 constexpr double kRestartAfter = 2.0;    // a longer pause between calls resets the memory [s]
-constexpr double kCaught = 0.5;      // of the way there, that the end moves in that time at most
-constexpr double kOnTheWay = 0.5;    // of the longest plan, where the end is too far
-constexpr double kLowestWait = 0.6;  // of the body over a deck below a roof [m]
 
 /// Length of what is left of a curve over the straight line between its ends, at least 1.
 double DetourOf(const UniformBspline& curve, double from) {
@@ -48,19 +45,12 @@ double DetourOf(const UniformBspline& curve, double from) {
 
 SplineState ToSpline(const FlatState& flat) { return {flat.p_WB, flat.v_WB, flat.a_WB}; }
 
-/// The end of a plan to a place to look from.
-EndpointTarget AtRest() {
-  EndpointTarget end;
-  end.height = 0.0;
-  return end;
-}
-
 }  // namespace
 
 class Replanner::Impl {
  public:
   Impl(const ReplannerOptions& options, const solvers::BackendRegistry& backends)
-      : options_(options), attempt_(options, backends), fallback_(options.limits) {
+      : options_(options), attempt_(options, backends), fallback_(options.limits), end_(options_) {
     for (UniformBspline* curve : {&current_.curve, &current_.stop, &next_.curve, &next_.stop,
                                   &result_.curve, &result_.stop}) {
       curve->Reserve(PlanAttempt::kMostControlPoints);
@@ -127,12 +117,10 @@ class Replanner::Impl {
   FreeSpace SpaceOverPad(const ReplanInput& input, const SplineState& start, double t_end,
                          const OccupancyMap& map) const;
   void Begin(const ReplanInput& input);
-  void SetEnd(const ReplanInput& input, const SplineState& start);
   const char* WrongInState(const ReplanInput& input) const;
   const ReplanResult& RefuseState(const ReplanInput& input, const char* wrong);
   void NoteAsked(double t_start);
   SplineState Start(const ReplanInput& input);
-  double FindFreeEnd(const ReplanInput& input, double T, const OccupancyMap& map);
   Attempt FirstAttempt(const ReplanInput& input, const SplineState& start, const FreeSpace& plain,
                        AttemptFacts* facts);
   AttemptRequest RequestFor(const ReplanInput& input, const SplineState& start,
@@ -152,9 +140,7 @@ class Replanner::Impl {
   double reaction_ = 0.0;          // after which a stop of this step begins [s]
   std::optional<double> asked_t_;  // the last answer took over then [s]
   bool stands_ = false;            // something is committed
-  std::optional<GoalAt> look_from_, on_the_way_;    // where a plan ends instead of at the pad
-  const estimation::PadPrediction* pad_ = nullptr;  // where a plan ends: this and ...
-  EndpointTarget end_;                              // ... this
+  PlanEnd end_;                    // of this step's plans
   ReplanResult result_;
   UnseenZone unseen_;
   bool planned_before_ = false;  // the committed curve is a plan to the pad: its arrival is kept
@@ -236,8 +222,7 @@ void Replanner::Impl::Begin(const ReplanInput& input) {
   reaction_ = options_.reaction;
   limits_ = LimitsUnder(options_.limits, options_.problem.vehicle, input.pull_W);
   fallback_.SetLimits(limits_);
-  look_from_.reset();
-  on_the_way_.reset();
+  end_.Forget();
   if (log_) log_->attempts.clear();
   result_.times = {};
   result_.guide_paths.Clear();
@@ -254,28 +239,6 @@ void Replanner::Impl::Begin(const ReplanInput& input) {
   result_.solver.iterations = result_.solver.evaluations = 0;
   result_.solver.cost = 0.0;
   for (solvers::TermCost& term : result_.solver.cost_by_term) term.cost = 0.0;
-}
-
-/// Where plans of this step end. If that is too far for one, they end on the straight way there. A pad that is hardly
-/// slower than the vehicle is not chased.
-void Replanner::Impl::SetEnd(const ReplanInput& input, const SplineState& start) {
-  pad_ = input.pad;
-  end_ = input.endpoint;
-  if (input.look_from_W) {
-    look_from_.emplace(*input.look_from_W);
-    pad_ = &*look_from_;
-    end_ = AtRest();
-  }
-  const double t0 = input.t_start;
-  const double guess = GuessDuration(start, t0, *pad_, end_, limits_, 1.0);
-  if (guess <= options_.max_duration || !std::isfinite(guess)) return;
-  const Eigen::Vector3d end = EndStateAt(*pad_, end_, t0).state.p;
-  const Eigen::Vector3d later = EndStateAt(*pad_, end_, t0 + options_.max_duration).state.p;
-  if ((later - end).norm() > kCaught * (end - start.p).norm()) return;
-  on_the_way_.emplace(start.p + kOnTheWay * options_.max_duration / guess * (end - start.p));
-  pad_ = &*on_the_way_;
-  end_ = AtRest();
-  result_.ends_in_contact = false;
 }
 
 /// Without a usable state of the vehicle nothing can be decided: the committed pair goes on, to its stop.
@@ -331,7 +294,10 @@ const ReplanResult& Replanner::Impl::Replan(const ReplanInput& input, const Occu
   const char* wrong = WrongInTarget(input, options_.max_duration);
   const bool target_valid = wrong == nullptr;
   if (wrong) result_.detail = wrong;
-  if (target_valid) SetEnd(input, start);
+  if (target_valid) {
+    end_.Set(input, start, limits_);
+    if (end_.is_on_the_way()) result_.ends_in_contact = false;
+  }
   result_.reason = target_valid ? Plan(input, start, map) : ReplanReason::kInvalidInput;
   // Where cells are to be seen first, no term decides.
   if (result_.reason == ReplanReason::kUnobserved) result_.forbidden_by = {};
@@ -362,8 +328,8 @@ FallbackFacts Replanner::Impl::FactsFor(const ReplanInput& input, const SplineSt
   facts.t0 = input.t_start;
   facts.reaction = reaction_;
   facts.hull = &hull;
-  facts.endpoint = look_from_ ? AtRest() : input.endpoint;
-  if (look_from_) facts.look_from_W = input.look_from_W;
+  facts.endpoint = end_.is_look() ? end_.target() : input.endpoint;
+  if (end_.is_look()) facts.look_from_W = input.look_from_W;
   facts.planned = planned_before_;
   return facts;
 }
@@ -401,38 +367,17 @@ const ReplanResult& Replanner::Impl::Rest(const ReplanInput& input, double climb
   return Finish(fallback_.Rest(FactsFor(input, start, hull), climb, &result_), input.t_start);
 }
 
-/// The first arrival from T on, and before the next attempt's, at which the plan's end is free. So a pad that passes an
-/// obstacle is met behind it. Under a roof there is none: then T, and an end above the pad comes down.
-double Replanner::Impl::FindFreeEnd(const ReplanInput& input, double T, const OccupancyMap& map) {
-  const FreeSpace space = Space(map);
-  const double latest = std::min(options_.constants.stretch * T, options_.max_duration);
-  for (double later = T; later <= latest; later *= options_.constants.end_step) {
-    const SplineState end = EndStateAt(*pad_, end_, input.t_start + later).state;
-    if (!space.Blocked(end.p)) return later;
-  }
-  if (!pad_->has_deck() || end_.touches()) return T;
-  const Eigen::Vector3d pad = pad_->MeanAt(input.t_start + T).p_WP;
-  for (double height = end_.height - map.resolution(); height >= kLowestWait;
-       height -= map.resolution()) {
-    if (space.Blocked(Eigen::Vector3d(pad + height * Eigen::Vector3d::UnitZ()))) continue;
-    end_.height = height;
-    end_.height_floor = std::min(end_.height_floor, height);
-    break;
-  }
-  return T;
-}
-
 /// The first attempt, and the facts that the ladder of attempts depends on. Out of reach: the fresh guess is longer
 /// than a plan may be.
 Attempt Replanner::Impl::FirstAttempt(const ReplanInput& input, const SplineState& start,
                                       const FreeSpace& plain, AttemptFacts* facts) {
   StageTimer timer(&result_.times.predict, StageTimer::kWhileLogged);
   const auto guess = [&](double detour) {
-    return GuessDuration(start, input.t_start, *pad_, end_, limits_, detour);
+    return GuessDuration(start, input.t_start, end_.pad(), end_.target(), limits_, detour);
   };
   facts->fresh = guess(1.0);
-  facts->lands_soon =
-      !result_.from_odometry && LandsSoon(next_, input.t_start, end_, HullIn(plain, DeckOf(input)));
+  facts->lands_soon = !result_.from_odometry &&
+                      LandsSoon(next_, input.t_start, end_.target(), HullIn(plain, DeckOf(input)));
   facts->at_rest = !result_.from_odometry && Fallback::AtRest(next_, input.t_start);
   facts->arrival = options_.arrival;
   facts->min_duration = options_.min_duration;
@@ -442,11 +387,12 @@ Attempt Replanner::Impl::FirstAttempt(const ReplanInput& input, const SplineStat
   const double left = next_.curve.t_end() - input.t_start;
   const bool on_plan = planned_before_ && !result_.from_odometry;
   const bool promised =
-      on_plan && !on_the_way_ &&
+      on_plan && !end_.is_on_the_way() &&
       guess(DetourOf(next_.curve, input.t_start)) > options_.constants.retime_below * left;
   // A vehicle that follows a pad needs no shorter plans than usual. Only the last ones before a
   // contact are shorter.
-  const double shortest = end_.touches() ? options_.min_contact_duration : options_.min_duration;
+  const double shortest =
+      end_.target().touches() ? options_.min_contact_duration : options_.min_duration;
   Attempt attempt;
   attempt.duration = std::clamp(promised ? left : facts->fresh, shortest, options_.max_duration);
   // The prepared problems' free arrival has the usual lower bound.
@@ -468,9 +414,9 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
   const double first = std::max(attempt.duration, facts.fresh);
   // On a plan, the next step first checks whether it holds.
   if (resumes_ && !on_plan && !facts.lands_soon && !result_.from_odometry) attempt = *resumes_;
-  attempt_.BeginStep();
+  attempt_.BeginStep(facts.at_rest ? WorkBudget::kAtRest * options_.max_work : options_.max_work);
   for (int tried = 1;; ++tried) {
-    if (!facts.lands_soon) attempt.duration = FindFreeEnd(input, attempt.duration, map);
+    if (!facts.lands_soon) attempt.duration = end_.FindFree(input.t_start, attempt.duration, map);
     FreeSpace space = SpaceOverPad(input, start, input.t_start + attempt.duration, map);
     const HullSpace hull = HullIn(space, DeckOf(input));
     if (attempt.unseen_reach > 0.0) {
@@ -514,8 +460,8 @@ AttemptRequest Replanner::Impl::RequestFor(const ReplanInput& input, const Splin
   request.start = start;
   request.t0 = input.t_start;
   request.reaction = reaction_;
-  request.pad = pad_;
-  request.target = end_;
+  request.pad = &end_.pad();
+  request.target = end_.target();
   request.limits = limits_;
   request.pull_W = input.pull_W;
   request.arrival = attempt.arrival;
@@ -537,8 +483,8 @@ AttemptRequest Replanner::Impl::RequestFor(const ReplanInput& input, const Splin
   request.bound = &bound_;
   // Shortly before contact nothing is kept: earlier pairs would push the vehicle there.
   const double left = next_.curve.t_end() - input.t_start;
-  request.keeps =
-      request.starts_on_previous && !(end_.leads_to_contact() && left < constants.near_contact);
+  request.keeps = request.starts_on_previous &&
+                  !(end_.target().leads_to_contact() && left < constants.near_contact);
   request.looks = !request.keeps || input.t_start - looked_t_ >= constants.look_every;
   if (request.looks) looked_t_ = input.t_start;
   request.log = log_ ? &log_->attempts.emplace_back() : nullptr;

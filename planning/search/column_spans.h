@@ -33,6 +33,8 @@ class ColumnSpans {
 
   /// Columns of the window along x and y.
   const Eigen::Vector2i& size() const { return size_; }
+  /// Cells of the window along z.
+  int levels() const { return blocked_.size().z(); }
 
   /// How many spans the column at x and y has. These count from the window's lowest cell.
   int Count(int x, int y) {

@@ -102,6 +102,7 @@ void SpanSearch::Forget(GuidePath* path) {
   path->clear();
   expansions_ = 0;
   cost_ = 0.0;
+  leaves_ = false;
 }
 
 SearchStatus SpanSearch::Search(const FreeSpace& space, const Eigen::Vector3d& from,
@@ -112,7 +113,8 @@ SearchStatus SpanSearch::Search(const FreeSpace& space, const Eigen::Vector3d& f
   CellIndex goal = map.CellOf(to);
   if (!map.InWindow(goal)) return SearchStatus::kEndsOutside;
   if (!GridSearch::NearestFree(space, &goal)) return SearchStatus::kEndsBlocked;
-  return SearchFrom(space, map.CellOf(from), goal, false, max_expansions, path, barriers, max_cost);
+  return SearchFrom(space, map.CellOf(from), goal, End::kGoal, max_expansions, path, barriers,
+                    max_cost);
 }
 
 SearchStatus SpanSearch::SearchOut(const FreeSpace& space, const Eigen::Vector3d& from,
@@ -122,17 +124,29 @@ SearchStatus SpanSearch::SearchOut(const FreeSpace& space, const Eigen::Vector3d
   CellIndex goal = map.CellOf(to);
   const int level = goal.z(), lowest = map.origin().z();
   goal.z() = std::clamp(level, lowest, lowest + map.size().z() - 1);
-  const bool out = !map.InWindow(goal);
-  if (!out && !GridSearch::NearestFree(space, &goal)) return SearchStatus::kEndsBlocked;
-  const SearchStatus status = SearchFrom(space, map.CellOf(from), goal, out, max_expansions, path,
-                                         {}, std::numeric_limits<double>::infinity());
+  const bool inside = map.InWindow(goal);
+  if (inside && !GridSearch::NearestFree(space, &goal)) return SearchStatus::kEndsBlocked;
+  SearchStatus status = SearchStatus::kNoPath;
+  for (const End end : {End::kGoal, End::kSide}) {
+    if ((end == End::kGoal && !inside) || status != SearchStatus::kNoPath) continue;
+    status = SearchFrom(space, map.CellOf(from), goal, end, max_expansions, path, {},
+                        std::numeric_limits<double>::infinity());
+    leaves_ = end == End::kSide && status == SearchStatus::kFound;
+  }
   cost_ += vertical_cost_ * map.resolution() * std::abs(level - goal.z());
   return status;
 }
 
-/// @param out the goal is out of the window: to its border.
+SearchStatus SpanSearch::Escape(const FreeSpace& space, const Eigen::Vector3d& from,
+                                int max_expansions) {
+  Forget(&escape_);
+  const CellIndex start = space.map->CellOf(from);
+  return SearchFrom(space, start, start, End::kAnywhere, max_expansions, &escape_, {},
+                    std::numeric_limits<double>::infinity());
+}
+
 SearchStatus SpanSearch::SearchFrom(const FreeSpace& space, CellIndex start, CellIndex goal,
-                                    bool out, int max_expansions, GuidePath* path,
+                                    End end, int max_expansions, GuidePath* path,
                                     std::span<const Barrier> barriers, double max_cost) {
   const OccupancyMap& map = *space.map;
   if (!map.InWindow(start)) return SearchStatus::kEndsOutside;
@@ -147,10 +161,10 @@ SearchStatus SpanSearch::SearchFrom(const FreeSpace& space, CellIndex start, Cel
   start -= map.origin();
   goal -= map.origin();
   const SearchStatus status =
-      SearchOn(start, goal, out, max_expansions, static_cast<float>(max_cost / map.resolution()));
+      SearchOn(start, goal, end, max_expansions, static_cast<float>(max_cost / map.resolution()));
   if (status != SearchStatus::kFound) return status;
   cost_ *= map.resolution();
-  if (out) goal = {way_.back().x, way_.back().y, end_z_};
+  if (end != End::kGoal) goal = {way_.back().x, way_.back().y, end_z_};
   Straighten(start.z(), goal.z());
   for (std::size_t i = 0; i < way_.size(); ++i) {
     // Between the gates at both sides of a column, which are within its span.
@@ -164,9 +178,10 @@ SearchStatus SpanSearch::SearchFrom(const FreeSpace& space, CellIndex start, Cel
   return status;
 }
 
-SearchStatus SpanSearch::SearchOn(const CellIndex& start, const CellIndex& goal, bool out,
+SearchStatus SpanSearch::SearchOn(const CellIndex& start, const CellIndex& goal, End end,
                                   int max_expansions, float max_cost) {
   queue_.Clear();
+  expansions_ = 0;
   const int nx = columns_.size().x(), ny = columns_.size().y();
   const auto address = [&](int x, int y, int id) {
     return static_cast<std::uint32_t>((id * ny + y) * nx + x);
@@ -177,11 +192,14 @@ SearchStatus SpanSearch::SearchOn(const CellIndex& start, const CellIndex& goal,
     return straight + kDiagonal * static_cast<float>(std::min(dx, dy)) +
            vertical_cost_ * static_cast<float>(std::abs(z - goal.z()));
   };
+  const bool out = end != End::kGoal;
   const int start_id = columns_.IdAt(start), goal_id = out ? 0 : columns_.IdAt(goal);
   if (start_id < 0 || goal_id < 0) return SearchStatus::kNoPath;  // a barrier closes an end
-  const auto ends = [&](std::uint32_t here, int x, int y) {
-    if (out) return x == 0 || y == 0 || x == nx - 1 || y == ny - 1;
-    return here == address(goal.x(), goal.y(), goal_id);
+  const int top = columns_.levels() - 1;
+  const auto ends = [&](std::uint32_t here, int x, int y, int id) {
+    if (!out) return here == address(goal.x(), goal.y(), goal_id);
+    if (end == End::kAnywhere && columns_.At(x, y, id).high == top) return true;
+    return x == 0 || y == 0 || x == nx - 1 || y == ny - 1;
   };
   const auto see = [&](const Reached& at, float g, int from_id) {
     const float left = to_goal(at.x, at.y, at.z);
@@ -207,7 +225,7 @@ SearchStatus SpanSearch::SearchOn(const CellIndex& start, const CellIndex& goal,
     node.closed = 1;
     const auto row = static_cast<int>(here) / nx;
     const int x = static_cast<int>(here) % nx, y = row % ny, id = row / ny, z = node.z;
-    if (ends(here, x, y)) {
+    if (ends(here, x, y, id)) {
       end_z_ = z;
       cost_ = node.g + to_goal(out ? x : goal.x(), out ? y : goal.y(), z);
       TraceBack(x, y, id);

@@ -40,14 +40,19 @@ class SpanSearch {
                       std::span<const Barrier> barriers = {},
                       double max_cost = std::numeric_limits<double>::infinity());
 
-  /// The same to a place that may be out of the window: then the path ends where it leaves the window, and the rest
-  /// costs as much as over nothing but free space.
+  /// The same to a place that may be out of the window, or be reached only from there: then the path ends where it
+  /// leaves the window, and the rest costs as much as over nothing but free space.
   SearchStatus SearchOut(const FreeSpace& space, const Eigen::Vector3d& from,
                          const Eigen::Vector3d& to, int max_expansions, GuidePath* path);
+
+  /// Whether any way leads out of the window, at its sides or its top: kFound. kNoPath: what blocks is all around.
+  SearchStatus Escape(const FreeSpace& space, const Eigen::Vector3d& from, int max_expansions);
 
   int expansions() const { return expansions_; }
   /// Of the path that was found last [m].
   double cost() const { return cost_; }
+  /// It leaves the window.
+  bool leaves() const { return leaves_; }
 
  private:
   // The nodes to be expanded. Those with the least f come first, to a quarter of a cell, and of these the last that
@@ -80,6 +85,8 @@ class SpanSearch {
     std::uint8_t step = 0;     // by which it was reached; kSelf: the start ...
     std::uint8_t from_id = 0;  // ... from this span of the column there
   };
+  // Where a way ends: at the goal, at a side of the window, at a side or the top.
+  enum class End { kGoal, kSide, kAnywhere };
   // A span of the way that was found.
   struct Place {
     int x, y;
@@ -93,10 +100,10 @@ class SpanSearch {
   };
 
   void Forget(GuidePath* path);
-  SearchStatus SearchFrom(const FreeSpace& space, CellIndex start, CellIndex goal, bool out,
+  SearchStatus SearchFrom(const FreeSpace& space, CellIndex start, CellIndex goal, End end,
                           int max_expansions, GuidePath* path, std::span<const Barrier> barriers,
                           double max_cost);
-  SearchStatus SearchOn(const CellIndex& start, const CellIndex& goal, bool out, int max_expansions,
+  SearchStatus SearchOn(const CellIndex& start, const CellIndex& goal, End end, int max_expansions,
                         float max_cost);
   void TraceBack(int x, int y, int id);
   void Straighten(double from, double to);
@@ -108,10 +115,12 @@ class SpanSearch {
   std::vector<Node> nodes_;
   Queue queue_;
   std::vector<Place> way_;
+  GuidePath escape_;
   std::vector<Gate> gates_;
   std::uint32_t search_ = 0;
   int expansions_ = 0;
   double cost_ = 0.0;
+  bool leaves_ = false;
   int end_z_ = 0;  // at which it ends [cells]
 };
 

@@ -14,6 +14,8 @@ class WorkBudget {
   static constexpr int kEvaluationsOfSetUp = 2;  ///< what the rest of a solve takes: set-up, checks
   static constexpr int kPair = 5;                ///< of a solve: bound and evaluated
 
+  static constexpr int kAtRest = 4;  ///< times the budget has a vehicle that rests: it is not late
+
   // The first user does not get all of it.
   static constexpr double kKeptShare = 0.25;   ///< is for the committed plan, where it may be kept
   static constexpr double kSearchShare = 0.5;  ///< of what is left is the most for a search: of the

@@ -88,7 +88,63 @@ TEST_F(Survey, ThePotentialIsTheShortestWay) {
   Wall(2.5, -13.0, 3.0);
   EXPECT_GT(lookout_.Length(space_, at_, at_ + Eigen::Vector3d(5.0, 0.0, 0.0)), 7.0);
   Wall(2.5, 3.0, 13.0);
-  EXPECT_TRUE(std::isinf(lookout_.Length(space_, at_, at_ + Eigen::Vector3d(5.0, 0.0, 0.0))));
+  EXPECT_GT(lookout_.Length(space_, at_, at_ + Eigen::Vector3d(5.0, 0.0, 0.0)), 12.0);
+  EXPECT_TRUE(lookout_.leaves()) << "to both sides the wall may end there";
+}
+
+TEST_F(Survey, ClosedIsWhatEnclosesTheVehicleOrTheGoal) {
+  const Eigen::Vector3d goal = at_ + Eigen::Vector3d(5.0, 0.0, 0.0);
+  const auto closed = [&] {
+    lookout_.Length(space_, at_, goal);
+    return lookout_.Closed(space_, at_, goal);
+  };
+  EXPECT_FALSE(closed());
+  Wall(2.5, -13.0, 13.0);
+  EXPECT_FALSE(closed()) << "the wall may end outside";
+  space_.ceiling = 4.0;
+  for (double x = 2.5; x < 8.0; x += 0.1) {
+    for (double z = 0.05; z < 5.0; z += 0.1) {
+      map_.SetOccupied({x, -2.5, z});
+      map_.SetOccupied({x, 2.5, z});
+    }
+  }
+  EXPECT_FALSE(closed());
+  Wall(8.0, -2.5, 2.5);
+  EXPECT_TRUE(closed());
+  space_.ceiling = 30.0;
+  EXPECT_FALSE(closed()) << "over the walls nothing was seen";
+}
+
+// A dead end that is larger than the window: what was seen of it on the way in counts on the way out.
+TEST_F(Survey, TheFarPotentialKnowsWhatIsOutOfTheWindow) {
+  space_.ceiling = 4.0;
+  const Eigen::Vector3d goal = at_ + Eigen::Vector3d(20.0, 0.0, 0.0);
+  const auto build = [&](double shift) {  // the same walls in a window around another place
+    map_ = OccupancyMap{OccupancyMapOptions{}};
+    map_.Recentre(at_ + Eigen::Vector3d(shift, 0.0, 0.0));
+    Wall(12.05, -4.0, 4.0);
+    for (double x = -20.0; x < 12.05; x += 0.1) {
+      for (double z = 0.05; z < 5.0; z += 0.1) {
+        map_.SetOccupied({x, -4.0, z});
+        map_.SetOccupied({x, 4.0, z});
+      }
+    }
+  };
+  lookout_.Prepare(space_);
+  for (const double shift : {0.0, -12.0}) {
+    build(shift);
+    lookout_.Keep(space_);
+  }
+  const Eigen::Vector3d here = at_ - Eigen::Vector3d(12.0, 0.0, 0.0);
+  EXPECT_NEAR(lookout_.Length(space_, here, goal), 32.0, 0.3) << "straight on";
+  const double far = lookout_.FarLength(space_, here, goal);
+  EXPECT_GT(far, 8.0 + 40.0);
+  EXPECT_LT(far, 60.0);
+  EXPECT_TRUE(lookout_.leaves());
+  map_.MarkRestFree();
+  lookout_.NoteNeeded(Hull(), here);
+  EXPECT_GT(lookout_.Onwards()->way, 8.0 + 12.0) << "out and around, all that is in the window";
+  EXPECT_GT(std::abs(lookout_.Onwards()->from.p_WB.y()), 4.0);
 }
 
 TEST_F(Survey, WhatWasSeenIsNotNeeded) {
@@ -137,6 +193,28 @@ TEST_F(Survey, WhereNothingCanBeSeenThereIsNoPlace) {
   blind.reach = 0.3;
   EXPECT_FALSE(lookout_.Choose(Hull(), {blind}, vehicle_, kCalm, {}));
   EXPECT_TRUE(lookout_.Choose(Hull(), {blind, Ahead()}, vehicle_, kCalm, {}));
+}
+
+// Above a roof there are hundreds of nearer places, with what is below in their image.
+TEST_F(Survey, OfManyPlacesThoseCountThatSeePastObstacles) {
+  Start(4.05);
+  for (double x = -11.0; x < 11.0; x += 0.1) {
+    for (double y = -11.0; y < 11.0; y += 0.1) map_.SetOccupied({x, y, 2.75});
+  }
+  map_.MarkRestFree();
+  for (int x = -20; x < 20; ++x) {
+    for (int y = -20; y < 20; ++y) {
+      for (int z = 3; z < 16; ++z) map_.SetState({x, y, z}, CellState::kUnknown);
+    }
+  }
+  lookout_.Length(space_, at_, {0.05, 0.05, 1.05});
+  ASSERT_TRUE(lookout_.NoteNeeded(Hull(), at_));
+  LookCamera camera = Ahead();
+  camera.reach = 9.0;
+  const Look* look = lookout_.Choose(Hull(), {camera}, vehicle_, kCalm, {});
+  ASSERT_TRUE(look);
+  EXPECT_LT(look->from.p_WB.z(), 3.0);
+  EXPECT_FALSE(look->cells.empty());
 }
 
 // Through a gap hardly wider than the hull, places on a coarse lattice are not connected.

@@ -9,7 +9,7 @@
 namespace touchdown::planning {
 namespace {
 
-constexpr int kFew = 4500;  // for such walls, in one step
+constexpr int kFew = 4500 / WorkBudget::kAtRest;  // for such walls, in one step
 
 /// Walls with a door each, which take several rounds and arrivals to get through.
 OccupancyMap WallsWithDoors(Draw* draw) {
@@ -75,8 +75,9 @@ TEST(ReplannerBudget, IsNeverExceeded) {
     for (double t = 0.0; t < 0.75; t += 0.1) {
       ReplanInput input = Input(replanner.Reference(t).p_WB, pad, t);
       input.vehicle.v_WB = replanner.Reference(t).v_WB;
+      const bool rests = replanner.Reference(input.t_start).v_WB.norm() < 0.05;
       const ReplanResult& result = replanner.Replan(input, map);
-      EXPECT_LE(result.work, options.max_work) << trial;
+      EXPECT_LE(result.work, (rests ? WorkBudget::kAtRest : 1) * options.max_work) << trial;
       EXPECT_GE(result.work, WorkOfSolves(log)) << trial;
       searched += result.work > WorkOfSolves(log);
       spent += replanner.state().unfinished.has_value();
@@ -84,6 +85,23 @@ TEST(ReplannerBudget, IsNeverExceeded) {
   }
   EXPECT_GT(spent, 5);
   EXPECT_GT(searched, 5);
+}
+
+TEST(ReplannerBudget, IsLargerForAVehicleThatRests) {
+  Draw draw(61);
+  int larger = 0;
+  for (int trial = 0; trial < 20; ++trial) {
+    const OccupancyMap map = WallsWithDoors(&draw);
+    const ArcPad pad({5.0, draw.Uniform(-1, 1), 0.3}, 0.0, 0.0, 0.0);
+    const Eigen::Vector3d start(-5.0, 0.0, 1.6);
+    const ReplannerOptions options = Within(1000);
+    Replanner replanner(options, solvers::StandardBackends());
+    replanner.CommitHover(start, 0.0);
+    const int work = replanner.Replan(Input(start, pad, 0.0), map).work;
+    EXPECT_LE(work, WorkBudget::kAtRest * options.max_work);
+    larger += work > options.max_work;
+  }
+  EXPECT_GT(larger, 10);
 }
 
 class ReplannerBudgets : public ::testing::TestWithParam<ArrivalMode> {};

@@ -13,6 +13,20 @@
 namespace touchdown::planning {
 namespace {
 
+ReplannerOptions BelowACeiling() {
+  ReplannerOptions options = Options(ArrivalMode::kFixed);
+  options.ceiling_height = 5.0;
+  return options;
+}
+
+/// From side to side of the window.
+void WallAcross(OccupancyMap* map, double x) {
+  const double middle = map->CentreOf(map->origin() + map->size() / 2).y();
+  for (double y = middle - 13.0; y < middle + 13.0; y += 0.1) {
+    for (double z = 0.05; z < 5.3; z += 0.1) map->SetOccupied({x, y, z});
+  }
+}
+
 /// Asks a scout ten times a second about a vehicle that was moved by hand.
 class Scouted : public ::testing::Test {
  protected:
@@ -43,6 +57,13 @@ class Scouted : public ::testing::Test {
     }
     return std::numeric_limits<double>::infinity();
   }
+  bool ClimbsOnceToAndFro() {
+    for (int i = 0; i < 400; ++i) {
+      look_ = Step({0.0, i / 30 % 2 == 0 ? 1.0 : -1.0, 0.0});
+      if (look_ && look_->p_WB.z() > p_.z() + 0.5) return true;
+    }
+    return false;
+  }
   void GoThere() {
     p_ = look_->p_WB;
     yaw_ = look_->yaw;
@@ -54,7 +75,7 @@ class Scouted : public ::testing::Test {
   std::unique_ptr<estimation::PadPrediction> pad_ =
       std::make_unique<GoalAt>(Eigen::Vector3d(8.0, 0.05, 2.05));
   std::vector<LookCamera> cameras_;
-  Scout scout_{Options(ArrivalMode::kFixed)};
+  Scout scout_{BelowACeiling()};
   std::optional<Viewpoint> look_;
 };
 
@@ -146,13 +167,8 @@ TEST_F(Scouted, APlaceThatIsNotReachedIsStruck) {
 // To and fro before a wall that has no end in sight.
 TEST_F(Scouted, AfterALongDetourItClimbs) {
   map_.MarkRestFree();
-  for (double y = -13.0; y < 13.0; y += 0.1) {
-    for (double z = 0.05; z < 5.3; z += 0.1) map_.SetOccupied({3.05, y, z});
-  }
-  int step = 0;
-  while (step < 400 && !look_) look_ = Step({0.0, step++ / 30 % 2 == 0 ? 1.0 : -1.0, 0.0});
-  ASSERT_TRUE(look_);
-  EXPECT_GT(look_->p_WB.z(), p_.z() + 0.5);
+  WallAcross(&map_, 3.05);
+  ASSERT_TRUE(ClimbsOnceToAndFro());
   EXPECT_NEAR(look_->yaw, 0.0, 1.0) << "it faces the wall";
 }
 
@@ -178,7 +194,6 @@ TEST_F(Scouted, WhereWhatWasSeenClosesEveryWayThereIsNone) {
     ++step;
   }
   ASSERT_TRUE(scout_.no_way());
-  EXPECT_TRUE(scout_.no_way()->closed);
   EXPECT_GE(scout_.no_way()->since, 2.5);
   EXPECT_LE(scout_.no_way()->since, t_);
   for (int y = -7; y < 8; ++y) {  // a door opens
@@ -201,27 +216,45 @@ TEST_F(Scouted, ThereIsAWayToAGoalThatMoves) {
   }
 }
 
-// What is needed is seen from nowhere: nothing is in the camera's reach.
-TEST_F(Scouted, WhereNothingHelpsThereIsNoWaySeen) {
-  cameras_[0].reach = 0.2;
-  for (int i = 0; i < 100 && !scout_.no_way(); ++i) Step();
-  ASSERT_TRUE(scout_.no_way());
-  EXPECT_FALSE(scout_.no_way()->closed);
-  EXPECT_EQ(scout_.no_way()->looks, 0);
-}
-
 TEST_F(Scouted, AfterALongDetourItClimbsForAGoalThatMoves) {
   map_.MarkRestFree();
-  for (double y = -13.0; y < 13.0; y += 0.1) {
-    for (double z = 0.05; z < 5.3; z += 0.1) map_.SetOccupied({3.05, y, z});
-  }
+  WallAcross(&map_, 3.05);
   pad_ = std::make_unique<MovingGoal>([](const Taylor& t) {
     return MovingGoal::Position{8.0 + 0.0 * t, 0.05 + 0.2 * t, 2.05 + 0.0 * t};
   });
-  int step = 0;
-  while (step < 400 && !look_) look_ = Step({0.0, step++ / 30 % 2 == 0 ? 1.0 : -1.0, 0.0});
+  EXPECT_TRUE(ClimbsOnceToAndFro());
+}
+
+TEST_F(Scouted, ThereMayBeAWayAroundTheWindow) {
+  map_.MarkRestFree();
+  WallAcross(&map_, 3.05);
+  for (int i = 0; i < 300; ++i) {
+    look_ = Step();
+    if (look_) GoThere();
+    EXPECT_FALSE(scout_.no_way()) << t_;
+  }
+}
+
+// All that is in the window was seen: it goes where the way leads on, and does not stop at the places on it.
+TEST_F(Scouted, FollowsTheWayOutOfTheWindow) {
+  map_.MarkRestFree();
+  WallAcross(&map_, 3.05);
+  FirstLook();
   ASSERT_TRUE(look_);
-  EXPECT_GT(look_->p_WB.z(), p_.z() + 0.5);
+  EXPECT_GT((look_->p_WB - p_).norm(), 5.0);
+  EXPECT_LT(look_->p_WB.x(), 3.0);
+  const double side = look_->p_WB.y() > p_.y() ? 1.0 : -1.0;
+  double farthest = 0.0;
+  for (int i = 0; i < 100; ++i) {
+    const auto look = Step({0.0, 1.0 * side, 0.0});
+    map_.Recentre(p_);
+    WallAcross(&map_, 3.05);
+    map_.MarkRestFree();
+    ASSERT_TRUE(look) << t_;
+    farthest = std::max(farthest, side * (look->p_WB - p_).y());
+    EXPECT_GT(side * (look->p_WB - p_).y(), 0.0) << t_;
+  }
+  EXPECT_GT(farthest, 5.0);
 }
 
 // Away from a goal to which nothing is in the way: no detour, however long.

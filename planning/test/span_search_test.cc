@@ -197,6 +197,53 @@ TEST(SpanSearch, AWayOutLeavesTheWindowWhereItCan) {
   EXPECT_GT(here, 100.0);
 }
 
+// The goal is in the window, and only a way around it leads there.
+TEST(SpanSearch, AGoalThatIsReachedFromOutsideOnly) {
+  OccupancyMap map(SmallMap(0.1));
+  Fill(&map, {1.0, -3.2, -1.6}, {1.3, 3.2, 1.6});
+  const FreeSpace space = SpaceOf(map);
+  SpanSearch search(kPlain);
+  GuidePath path;
+  const Eigen::Vector3d from(0.05, 0.05, 0.05), goal(2.05, 0.05, 0.05);
+  ASSERT_EQ(search.SearchOut(space, from, goal, kEnough, &path), SearchStatus::kFound);
+  EXPECT_TRUE(search.leaves());
+  EXPECT_LT(path.back().x(), 1.0);
+  EXPECT_GT(search.cost(), 2.0);
+  ASSERT_EQ(search.SearchOut(space, from, {0.55, 2.05, 0.05}, kEnough, &path),
+            SearchStatus::kFound);
+  EXPECT_FALSE(search.leaves());
+}
+
+TEST(SpanSearch, NothingEscapesFromAClosedBoxButAnyHoleWillDo) {
+  const Eigen::Vector3d inside(0.05, 0.05, 0.05);
+  SpanSearch search(kPlain);
+  const auto escape = [&](const auto& open) {
+    OccupancyMap map(SmallMap(0.0));
+    for (int i = -10; i <= 10; ++i) {
+      for (int j = -10; j <= 10; ++j) {
+        for (const int side : {-10, 10}) {
+          for (int axis = 0; axis < 3; ++axis) {
+            CellIndex cell;
+            cell[axis] = side;
+            cell[(axis + 1) % 3] = i;
+            cell[(axis + 2) % 3] = j;
+            map.SetOccupied(map.CentreOf(cell));
+          }
+        }
+      }
+    }
+    open(&map);
+    return search.Escape(SpaceOf(map), inside, kEnough);
+  };
+  EXPECT_EQ(escape([](OccupancyMap*) {}), SearchStatus::kNoPath);
+  const auto hole = [](const CellIndex& cell) {
+    return [cell](OccupancyMap* map) { map->SetState(cell, CellState::kFree); };
+  };
+  for (const CellIndex& cell : {CellIndex(10, 3, 2), {-4, -10, 0}, {1, 2, 10}}) {
+    EXPECT_EQ(escape(hole(cell)), SearchStatus::kFound) << cell.transpose();
+  }
+}
+
 TEST(SpanSearch, AWayDownOutOfTheWindowEndsAtItsLowestCells) {
   OccupancyMap map(SmallMap(0.1));
   const FreeSpace space = SpaceOf(map);

@@ -9,11 +9,10 @@
 
 namespace touchdown::planning {
 
-/// The answer of a scout that knows no way on.
+/// What was seen closes every way.
 struct NoWay {
-  double since = 0.0;   ///< [s]
-  int looks = 0;        ///< how often it went to look since it was last nearer
-  bool closed = false;  ///< by what was seen; false: what a way needs is seen from nowhere
+  double since = 0.0;  ///< [s]
+  int looks = 0;       ///< how often it went to look since it was last nearer
 };
 
 /// The narrowest place of a way.

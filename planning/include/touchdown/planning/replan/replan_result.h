@@ -53,7 +53,7 @@ struct ReplannerOptions {
   /// A solve ends this near to the optimum, as a share of the cost (solvers::Stop::gap). A plan needs its
   /// certificate, not the last digits of an optimum.
   double gap = 5e-3;
-  /// Budget of a step (work_budget.h). If there is no plan to fly, the next step continues: after a first attempt
+  /// Budget of a step (work_budget.h); from rest four times that. If there is no plan to fly, the next step continues: after a first attempt
   /// that did not fit, at a later one.
   int max_work = 10000;
   StepConstants constants;  ///< what else a step decides by
@@ -191,7 +191,7 @@ struct ReplanResult : FlightPair {
   BoundParts bound;               ///< what of that plan they bind
   int solves = 0;                 ///< solver calls
   int rebinds = 0;                ///< of these, after a re-binding
-  int work = 0;                   ///< that was done, of max_work
+  int work = 0;                   ///< that was done, of its budget
   solvers::SolverSummary solver;  ///< of the last solve of that plan
   StageTimes times;
 };
