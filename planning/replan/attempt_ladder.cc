@@ -63,8 +63,8 @@ struct Rule {
 };
 
 constexpr std::array kRules = {
-    // Before a contact, only this is postponed, once.
-    Rule{[](const Case& c) { return c.facts.lands_soon && c.first(); },
+    // Before a contact, only one that does not hold is postponed, once: a pad that turns back is never met otherwise.
+    Rule{[](const Case& c) { return c.facts.lands_soon && !c.facts.lands_well && c.first(); },
          [](const Case& c) { return Next(c, LandLater); }},
     Rule{[](const Case& c) { return c.facts.lands_soon; },
          [](const Case& c) { return Stop(c.outcome.reason); }},

@@ -437,6 +437,8 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
         !facts.lands_soon && fallback_.GoesOn(FactsFor(input, start, hull), &result_)) {
       return reason;
     }
+    facts.lands_well = facts.lands_soon && Fallback::LookAtLanding(next_, input.t_start, hull) ==
+                                               Fallback::Landing::kHolds;
     const AttemptDecision decision =
         NextAttempt(attempt, {reason, attempt_.duration()}, facts, options_.constants);
     if (attempt_.spent()) {

@@ -23,7 +23,8 @@ struct Outcome {
 
 /// Further inputs of the rules, the same for all attempts of a step.
 struct AttemptFacts {
-  bool lands_soon = false;  ///< the committed plan is about to touch the deck
+  bool lands_soon = false;  ///< the committed plan is about to touch the deck, ...
+  bool lands_well = false;  ///< ... and holds: no later one is needed
   bool at_rest = false;
   ArrivalMode arrival = ArrivalMode::kFixed;  ///< that the options ask for
   double fresh = 0.0;                         ///< guess of the duration from this start [s]
