@@ -119,6 +119,7 @@ class Trial {
         stay_(StayOf(scenario)),
         goal_(GoalOf(scenario)),
         limits_(scenario.limits),
+        floor_(control::LowestPlan(world_.model())),
         ceiling_(scenario.planning.ceiling),
         landing_time_(LandingTimeTaskOf(scenario, world_)),
         judge_(LandingRule{}, scenario.timeout, stay_),
@@ -214,7 +215,7 @@ class Trial {
         task_ == TaskKind::kGoTo ? goal_.At(t).p_WP : onboard_.pad().Estimate(t).p_WP;
     solvers::AddThreadCpu(&result_.timing.judging_cpu_s, [&] {
       result_.no_way->narrowest =
-          planning::FindNarrowPlace(map, onboard_.own().p_WB, target, 0.0, ceiling_);
+          planning::FindNarrowPlace(map, onboard_.own().p_WB, target, floor_, ceiling_);
     });
     Note(t, "no_way", NoWaySentence(result_).substr(1));
   }
@@ -467,7 +468,7 @@ class Trial {
   std::optional<HoldTask> stay_;
   planning::MovingGoal goal_;  ///< of the task go_to
   Scenario::Limits limits_;
-  double ceiling_;
+  double floor_, ceiling_;        ///< of the body's origin [m]
   bool no_way_said_ = false;      ///< by the vehicle
   LandingTimeTask landing_time_;  ///< at the start
   LandingJudge judge_;

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <limits>
 
+#include "planning/certify/start_cells.h"
 #include "planning/spline/fastest_leg.h"
 #include "touchdown/planning/map/cell_box.h"
 #include "touchdown/planning/map/pad_outline.h"
@@ -23,7 +24,6 @@ constexpr double kStep =
     0.01;  // between looks at the position, at most [s]; a bend of 10 m/s^2 is 0.1 mm off
 constexpr double kAhead =
     0.25;  // the box of free cells is to reach the ball that comes so much later [s]
-constexpr double kNearer = 1e-6;    // rounding of a hull that leaves a cell: it comes no nearer [m]
 constexpr double kRounding = 1e-9;  // of heights of cells and deck [m]
 constexpr double kFaceRange = 1.5;  // the deck was looked at from so far, about, at last [m]
 constexpr double kFaceSlack = 0.02;  // of feet that are about to meet the deck [m]
@@ -105,11 +105,6 @@ class Stretch {
   Eigen::Vector3d axis_ = Eigen::Vector3d::Zero();  // zero: the way has not left the ball
   double away2_ = 0.0, off2_ = 0.0;                 // largest, of the places since the ball
 };
-
-/// Distance of a coordinate from the cell i.
-double Gap(double x, int i, double resolution) {
-  return std::max({0.0, i * resolution - x, x - (i + 1) * resolution});
-}
 
 class Tube {
  public:
@@ -249,37 +244,24 @@ class Tube {
         const CellIndex cell = at + CellIndex(std::countr_zero(missing), 0, 0);
         if (hull_.unseen_passes && !map_.IsOccupied(cell)) continue;
         if (surface != nullptr && IsFace(cell, *surface)) continue;
-        if (!WasThere(cell, p)) {
+        if (!WasThere(cell, start_, p, radius_, map_.resolution())) {
           return Unseen(cell, sweep);
         }
         // The deck may have driven on: where it was nothing else is.
         if (HoldsFace(cell.z(), start_deck_) && IsFace(cell, start_deck_)) continue;
         // What only the room between two balls reaches into is not in the grown hull.
-        const double at_start = Distance(cell, start_);
-        if (at_start < hull_.hull_radius - kNearer) {
+        const double at_start = DistanceTo(cell, start_, map_.resolution());
+        if (at_start < hull_.hull_radius - kNoNearer) {
           const bool occupied = map_.IsOccupied(cell);
           sweep->start.occupied |= occupied;
           sweep->start.unknown |= !occupied && !hull_.start_proven;
         }
-        sweep->start.narrow |= at_start < hull_.radius() - kNearer;
+        sweep->start.narrow |= at_start < hull_.radius() - kNoNearer;
       }
       left -= n;
       at.x() += n;
     }
     return true;
-  }
-
-  /// The hull reached into the cell at the start and is now no nearer to it.
-  bool WasThere(const CellIndex& cell, const Eigen::Vector3d& p) const {
-    const double at_start = Distance(cell, start_);
-    return at_start > 0.0 && at_start < radius_ && Distance(cell, p) >= at_start - kNearer;
-  }
-
-  double Distance(const CellIndex& cell, const Eigen::Vector3d& p) const {
-    const double side = map_.resolution();
-    return Eigen::Vector3d(Gap(p.x(), cell.x(), side), Gap(p.y(), cell.y(), side),
-                           Gap(p.z(), cell.z(), side))
-        .norm();
   }
 
   bool Unseen(const CellIndex& cell, Sweep* sweep) const {

@@ -5,13 +5,11 @@
 
 namespace touchdown::planning {
 
-/// What was ever seen to block the vehicle, far beyond the map's window: every third cell of each axis, 154 m x 154 m
-/// around the vehicle and 9.6 m up, of cells of 0.1 m. What blocks is as thick as the hull, so nothing closed is open
-/// here; a narrow passage may be missed.
+/// What was ever seen to block the vehicle, far beyond the map's window: a cell every 0.3 m, 154 m x 154 m around the
+/// vehicle and 9.6 m up. What blocks is as thick as the hull, so nothing closed is open here; a narrow passage may be
+/// missed.
 class FarMemory {
  public:
-  static constexpr int kApart = 3;  // cells
-
   /// Of maps as this one, from the floor [m] up.
   FarMemory(const OccupancyMap& map, double floor);
 
@@ -22,6 +20,7 @@ class FarMemory {
   const OccupancyMap& map() const { return far_; }
 
  private:
+  int apart_;  // cells of the map
   OccupancyMap far_;
 };
 

@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "planning/certify/start_cells.h"
 #include "touchdown/planning/certify/stored_stop.h"
 
 namespace touchdown::planning {
@@ -16,7 +17,7 @@ constexpr int kMostSpans = 150000;      // that a search expands: more than a wi
 constexpr double kBetweenBalls = 0.15;  // along the way [m]
 constexpr double kSoon = 1.5;           // cells so far along it are worth a third of the first [m]
 constexpr std::size_t kMostNeeded = 600;  // cells
-constexpr std::size_t kUsualPath = 512, kUsualNeeded = 40000, kUsualNumbers = 200000,
+constexpr std::size_t kUsualPath = 2048, kUsualNeeded = 40000, kUsualNumbers = 200000,
                       kUsualCameras = 8;
 constexpr int kStrides[] = {4, 2, 1};  // cells between places
 constexpr std::size_t kManyPlaces = 500, kMostPlaces = 2000, kMostTried = 500;
@@ -24,10 +25,6 @@ constexpr std::size_t kSample = 200;  // needed cells, by which places are compa
 constexpr double kFlies = 1.0, kTurns = 1.2,
                  kStays = 0.6;                      // [m/s], [rad/s], [s]: what a look takes
 constexpr double kSamePlace = 0.4, kSameYaw = 0.5;  // of a struck one [m], [rad]
-
-double Distance(const OccupancyMap& map, const CellIndex& cell, const Eigen::Vector3d& p) {
-  return ((map.CentreOf(cell) - p).array().abs() - 0.5 * map.resolution()).max(0.0).matrix().norm();
-}
 
 /// Calls visit(cell) for the cells of the hull's ball at p that were not seen free and are not the deck's. Ends where
 /// it returns false; whether none did.
@@ -50,7 +47,7 @@ bool ForEachUnseen(const HullSpace& hull, const Eigen::Vector3d& p, Visit&& visi
       if (inside) missing &= ~map.ObservedFreeRow(first, count);
       for (; missing != 0; missing &= missing - 1) {
         const CellIndex cell = first + CellIndex(std::countr_zero(missing), 0, 0);
-        if (Distance(map, cell, p) < radius && !visit(cell)) return false;
+        if (DistanceTo(cell, p, side) < radius && !visit(cell)) return false;
       }
     }
   }
@@ -116,7 +113,7 @@ float& Lookout::CellNumbers::At(const CellIndex& cell) {
 double Lookout::Length(const FreeSpace& space, const Eigen::Vector3d& from,
                        const Eigen::Vector3d& goal) {
   status_ = search_.SearchOut(space, from, goal, kMostSpans, &path_);
-  leaves_ = search_.leaves();
+  end_ = search_.end();
   return status_ == SearchStatus::kFound ? search_.cost() : std::numeric_limits<double>::infinity();
 }
 
@@ -126,7 +123,8 @@ double Lookout::FarLength(const FreeSpace& space, const Eigen::Vector3d& from,
   far.map = &far_->map();
   const SearchStatus status = far_search_.SearchOut(far, from, goal, kMostSpans, &back_);
   // It may have missed a passage: then what the window holds must do.
-  const bool missed = far_search_.leaves() && far.map->InWindow(far.map->CellOf(goal));
+  const bool missed =
+      far_search_.end() != SpanSearch::End::kGoal && far.map->InWindow(far.map->CellOf(goal));
   if (status != SearchStatus::kFound || missed) return Length(space, from, goal);
   // Within the window the way is as it is there, to where the other leaves it.
   const OccupancyMap& map = *space.map;
@@ -136,13 +134,13 @@ double Lookout::FarLength(const FreeSpace& space, const Eigen::Vector3d& from,
   if (last == back_.begin()) return Length(space, from, goal);
   status_ = search_.Search(space, from, *(last - 1), kMostSpans, &path_);
   if (status_ != SearchStatus::kFound) return Length(space, from, goal);
-  leaves_ = last != back_.end();
+  end_ = last == back_.end() ? SpanSearch::End::kGoal : SpanSearch::End::kSide;
   return far_search_.cost();
 }
 
 bool Lookout::Closed(const FreeSpace& space, const Eigen::Vector3d& from,
                      const Eigen::Vector3d& goal) {
-  if (status_ == SearchStatus::kFound && !leaves_) return false;
+  if (status_ == SearchStatus::kFound && end_ == SpanSearch::End::kGoal) return false;
   const auto is_enclosed = [&](const Eigen::Vector3d& p) {
     if (!space.map->InWindow(space.map->CellOf(p))) return false;
     const SearchStatus status = search_.Escape(space, p, kMostSpans);
@@ -211,14 +209,10 @@ void Lookout::Flood(const HullSpace& hull, const Place& from, int stride) {
   const auto place = [&](const CellIndex& node) -> Eigen::Vector3d {
     return from.p_W + side * node.cast<double>();
   };
-  // Where the vehicle is it may be, and it may leave (Sweep in swept_hull.cc has the same rule).
-  const auto was_there = [&](const CellIndex& cell, const Eigen::Vector3d& p) {
-    const double at_begin = Distance(map, cell, begin_.p_W);
-    return at_begin < hull.radius() && Distance(map, cell, p) >= at_begin;
-  };
   const auto fits = [&](const Eigen::Vector3d& p) {
     return !hull.space->Blocked(p) && ForEachUnseen(hull, p, [&](const CellIndex& cell) {
-      return !map.IsOccupied(cell) && was_there(cell, p);
+      return !map.IsOccupied(cell) &&
+             WasThere(cell, begin_.p_W, p, hull.radius() + kSweepRoom, map.resolution());
     });
   };
   // Of a place: how far it is, or that the hull does not fit.
@@ -254,8 +248,9 @@ void Lookout::Flood(const HullSpace& hull, const Place& from, int stride) {
   }
 }
 
-const Look* Lookout::Onwards() {
+const Look* Lookout::Onwards(const std::vector<Viewpoint>& struck) {
   look_.from = {seen_until_.p_W, std::atan2(along_.y(), along_.x())};
+  if (IsStruck(look_.from, struck)) return nullptr;
   look_.way = seen_until_.way;
   look_.cells.clear();
   return &look_;

@@ -39,8 +39,8 @@ class Lookout {
   /// the window it ends where it leaves that, and the rest is straight. Infinite: there is none.
   double Length(const FreeSpace& space, const Eigen::Vector3d& from, const Eigen::Vector3d& goal);
 
-  /// Of the last Length: the way leaves the window.
-  bool leaves() const { return leaves_; }
+  /// Where the way of the last Length ends: at the goal, or where it leaves the window.
+  SpanSearch::End end() const { return end_; }
 
   /// The same, with all that was seen before: of a way that leaves the window.
   double FarLength(const FreeSpace& space, const Eigen::Vector3d& from,
@@ -57,14 +57,18 @@ class Lookout {
   /// False: there are none. @pre the last Length, from the same place, was finite
   bool NoteNeeded(const HullSpace& hull, const Eigen::Vector3d& from);
 
+  /// How far that way leads through cells that were seen free [m].
+  double seen() const { return seen_until_.way; }
+
   /// From where most of the needed cells are seen in the time that it takes, of all places to which cells lead that
   /// were seen free. Not from where `struck` is. nullptr: from nowhere. Valid until the next call. @pre NoteNeeded
   const Look* Choose(const HullSpace& hull, const std::vector<LookCamera>& cameras,
                      const estimation::VehicleState& vehicle, const Eigen::Vector3d& pull_W,
                      const std::vector<Viewpoint>& struck);
 
-  /// The last place on the way to which cells lead that were seen free, turned along it. As Choose.
-  const Look* Onwards();
+  /// The last place on the way to which cells lead that were seen free, turned along it. nullptr: it is struck. As
+  /// Choose. @pre NoteNeeded
+  const Look* Onwards(const std::vector<Viewpoint>& struck);
 
   /// The highest place to which cells lead that were seen free, turned to the goal. As Choose.
   const Look* Highest(const HullSpace& hull, const Eigen::Vector3d& from,
@@ -116,7 +120,7 @@ class Lookout {
   SpanSearch far_search_;
   std::optional<FarMemory> far_;
   SearchStatus status_ = SearchStatus::kNoPath;  // of the last Length, ...
-  bool leaves_ = false;                          // ... and of its way
+  SpanSearch::End end_ = SpanSearch::End::kGoal;  // ... and of its way
   CellNumbers numbers_;
   std::vector<Entry> queue_;
   GuidePath path_, back_;

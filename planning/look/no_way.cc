@@ -75,15 +75,22 @@ double LeastGap(const OccupancyMap& map) {
 std::optional<NarrowPlace> FindNarrowPlace(const OccupancyMap& map, const Eigen::Vector3d& from,
                                            const Eigen::Vector3d& to, double floor,
                                            double ceiling) {
+  const double bottom = (map.origin().z() + 0.5) * map.resolution();
   const auto level_in = [&](const Eigen::Vector3d& p_W) {
     CellIndex cell = map.CellOf(p_W) - map.origin();
-    cell.z() = std::clamp(cell.z(), 0, map.size().z() - 1);
+    const auto low = static_cast<int>(std::ceil((floor - bottom) / map.resolution()));
+    const auto high = static_cast<int>(std::floor((ceiling - bottom) / map.resolution()));
+    const int last = map.size().z() - 1;
+    cell.z() = std::min(std::max({cell.z(), low, 0}), std::min(high, last));
     return cell;
   };
   const CellIndex start = level_in(from), goal = level_in(to);
   const auto most = static_cast<int>(std::lround(0.5 * NarrowPlace::kWidest / map.resolution()));
   const Distances distances(map, most);
-  if (!distances.Holds(start) || !distances.Holds(goal)) return std::nullopt;
+  const auto is_free = [&](const CellIndex& cell) {
+    return distances.Holds(cell) && distances.At(distances.IndexOf(cell)) > 0;
+  };
+  if (!is_free(start) || !is_free(goal)) return std::nullopt;
 
   constexpr std::uint8_t kNotReached = 0xff, kStart = 0xfe;
   std::vector<std::uint8_t> came_by(distances.count(), kNotReached);

@@ -10,6 +10,7 @@
 #include "planning/certify/pad_strip.h"
 #include "planning/look/lookout.h"
 #include "planning/replan/plan_end.h"
+#include "planning/replan/replan_checks.h"
 #include "planning/replan/spaces.h"
 
 namespace touchdown::planning {
@@ -49,21 +50,26 @@ class Scout::Impl {
 
   std::optional<Viewpoint> Step(const ReplanInput& input, const std::vector<LookCamera>& cameras,
                                 const OccupancyMap& map, bool may_look) {
-    if (cameras.empty()) return std::nullopt;
+    if (cameras.empty() || WrongInState(input) || WrongInTarget(input, options_.max_duration)) {
+      return std::nullopt;
+    }
     Was now = {input.t_now, 0, input.vehicle.p_WB, Goal(input, map)};
     for (const LookCamera& camera : cameras) now.images += camera.images;
-    if (!was_.empty()) detour_ += (now.p_WB - was_.back().p_WB).norm();
-    if (!was_.empty() && now.t > was_.back().t + kGap) Forget();
-    was_.push_back(now);
+    Note(now);
+    const bool at_goal = (now.goal_W - now.p_WB).norm() < kAtGoal;
+    if (at_goal) best_ = std::numeric_limits<double>::infinity();
+    if (at_goal || !may_look) {
+      detour_ = 0.0;
+      no_way_.reset();
+    }
     if (look_ && !(may_look && StillLooks(input, map))) {
       Forget();
       was_.push_back(now);
     }
-    const bool looks = look_ != nullptr;
-    ForgetLongAgo(now, looks);
-    if (looks) return look_->from;
-    const bool asks = IsLongAgo(was_.front(), now, false) && now.t >= asked_t_ + kAsksEvery;
-    if (!may_look || !(climbs_ || follows_ || asks)) return std::nullopt;
+    if (look_) return look_->from;
+    const bool asks =
+        IsLongAgo(was_.front(), now, false) && now.t >= asked_t_ + kAsksEvery && !at_goal;
+    if (!may_look || !(asks || way_ != Way::kPlanned)) return std::nullopt;
     asked_t_ = now.t;
     Search(input, cameras, map);
     if (look_ == nullptr) return std::nullopt;
@@ -81,6 +87,21 @@ class Scout::Impl {
     int images;  // used until then
     Eigen::Vector3d p_WB, goal_W;
   };
+
+  // The way that it goes.
+  enum class Way {
+    kPlanned,  // of the planner, or to see what it needs
+    kOut,      // the one that leads out of the window
+    kUp        // over what is in the way
+  };
+
+  void Note(const Was& now) {
+    if (!was_.empty() && now.t > was_.back().t + kGap) Forget();
+    if (!was_.empty()) detour_ += (now.p_WB - was_.back().p_WB).norm();
+    if (was_.size() == kUsualSteps) was_.erase(was_.begin() + 1);  // without images for long
+    was_.push_back(now);
+    ForgetLongAgo(now, look_ != nullptr);
+  }
 
   void Forget() {
     look_ = nullptr;
@@ -115,72 +136,66 @@ class Scout::Impl {
   void Search(const ReplanInput& input, const std::vector<LookCamera>& cameras,
               const OccupancyMap& map) {
     const Was& now = was_.back();
-    if ((now.goal_W - now.p_WB).norm() < kAtGoal) return;
     FreeSpace space = SpaceFor(options_, map);
     LayPadStrip(*input.pad, input.endpoint, now.p_WB, input.t_start,
                 input.t_start + options_.min_duration, options_.pad_radius, options_.contact_height,
                 &space);
     const HullSpace hull = HullFor(options_, space, input.margins.Sum(), DeckOf(input));
     lookout_.Keep(space);
-    if (climbs_) return Climb(hull);
-    const bool goal_moved = (now.goal_W - best_goal_W_).norm() > kNearer;
-    const double there = goal_moved ? lookout_.Length(space, now.p_WB, best_goal_W_) : length_;
+    if (way_ == Way::kUp) return Climb(hull);
     const bool progress = MadeProgress(space);
-    if (goal_moved) {
-      best_ += length_ - there;
-      best_goal_W_ = now.goal_W;
-    }
-    climbs_ = ShallClimb(map);
-    if (climbs_) return Climb(hull);
-    follows_ = follows_ && lookout_.leaves();
-    if (progress && !follows_) return no_way_.reset();
+    NoteBest(map);
+    if (detour_ > most_detour_) return Climb(hull);
+    if (lookout_.end() == SpanSearch::End::kGoal) way_ = Way::kPlanned;
+    if (progress && way_ == Way::kPlanned) return no_way_.reset();
     if (lookout_.Closed(space, now.p_WB, now.goal_W)) return NoteNoWay();
     no_way_.reset();
     if (!std::isfinite(length_)) return;
+    if (lookout_.end() == SpanSearch::End::kAnywhere && !up_) return Climb(hull);
     bool needs = lookout_.NoteNeeded(hull, now.p_WB);
-    follows_ = follows_ || (lookout_.leaves() && lookout_.Onwards()->way > kPassesBy);
-    if (follows_) {
+    const bool leaves = lookout_.end() != SpanSearch::End::kGoal;
+    if (leaves && (!needs || lookout_.seen() > kPassesBy)) way_ = Way::kOut;
+    if (way_ == Way::kOut) {
       length_ = lookout_.FarLength(space, now.p_WB, now.goal_W);
       needs = lookout_.NoteNeeded(hull, now.p_WB);
+      if (lookout_.seen() > kOnwards) look_ = lookout_.Onwards(struck_);
     }
-    if (follows_ && lookout_.Onwards()->way > kOnwards) {
-      look_ = lookout_.Onwards();
-    } else if (needs) {
-      look_ = lookout_.Choose(hull, cameras, input.vehicle, input.pull_W, struck_);
-      if (look_ == nullptr) struck_.clear();  // all were tried: again
-    }
+    if (look_ != nullptr || !needs) return;
+    look_ = lookout_.Choose(hull, cameras, input.vehicle, input.pull_W, struck_);
+    if (look_ == nullptr) struck_.clear();  // all were tried: again
   }
 
   /// To a goal that stands.
   void NoteNoWay() {
     const Was &then = was_.front(), &now = was_.back();
+    way_ = Way::kPlanned;
+    if (!IsLongAgo(then, now, true)) return;
     if ((now.goal_W - then.goal_W).norm() > kNearer) return no_way_.reset();
     if (!no_way_) no_way_ = {now.t, looks_};
   }
 
   /// Around an obstacle that has no end one way is as good as any: after as long a way as that, over it. A straight way
   /// is none around.
-  bool ShallClimb(const OccupancyMap& map) {
+  void NoteBest(const OccupancyMap& map) {
     const Was& now = was_.back();
-    if (!std::isfinite(length_)) return !up_;
     const bool straight = length_ < lookout_.Least(map, now.p_WB, now.goal_W) + kNearer;
-    const bool nearer = !(length_ >= best_ - kNearer);
+    const bool nearer = length_ < best_ - kNearer;
     if (nearer) {
       best_ = length_;
       looks_ = 0;
-      follows_ = false;
+      way_ = Way::kPlanned;
     }
     if (nearer || straight) {
       detour_ = 0.0;
       most_detour_ = kDetour;
       up_ = false;
     }
-    return detour_ > most_detour_;
   }
 
   /// As high as it can be seen to lead, and from there again.
   void Climb(const HullSpace& hull) {
     const Was& now = was_.back();
+    way_ = Way::kUp;
     look_ = lookout_.Highest(hull, now.p_WB, now.goal_W);
     if (look_ != nullptr && look_->from.p_WB.z() > now.p_WB.z() + kHigher) return;
     look_ = nullptr;
@@ -189,13 +204,13 @@ class Scout::Impl {
 
   /// From here on the next way around.
   void EndClimb() {
-    climbs_ = false;
+    way_ = Way::kPlanned;
     up_ = true;
     detour_ = 0.0;
     most_detour_ *= 2.0;
   }
 
-  /// The vehicle is nearer to where the goal was then, or to where it is now.
+  /// The vehicle is nearer to where the goal was then, or to where it is now. The best moves with the goal.
   bool MadeProgress(const FreeSpace& space) {
     const Was &then = was_.front(), &now = was_.back();
     const auto nearer = [&](const Eigen::Vector3d& goal) {
@@ -203,20 +218,28 @@ class Scout::Impl {
       length_ = lookout_.Length(space, now.p_WB, goal);
       return length_ < before - kNearer;
     };
+    const bool best_moved = (now.goal_W - best_goal_W_).norm() > kNearer;
+    const double there = best_moved ? lookout_.Length(space, now.p_WB, best_goal_W_) : 0.0;
     const bool goal_moved = (now.goal_W - then.goal_W).norm() > kNearer;
     const bool to_then = goal_moved && nearer(then.goal_W);
-    return nearer(now.goal_W) || to_then;
+    const bool to_now = nearer(now.goal_W);
+    if (best_moved) {
+      const double moved = length_ - there;
+      best_ = std::isfinite(moved) ? best_ + moved : std::numeric_limits<double>::infinity();
+      best_goal_W_ = now.goal_W;
+    }
+    return to_now || to_then;
   }
 
   /// Until the cells were seen, or were looked for in vain, or the place is not reached.
   bool StillLooks(const ReplanInput& input, const OccupancyMap& map) {
+    const Was &then = was_.front(), &now = was_.back();
+    const double left = (now.p_WB - look_->from.p_WB).norm();
+    const bool passes = way_ == Way::kOut && look_->cells.empty();
+    if (passes && left < std::min(kPassesBy, 0.5 * look_->way)) return false;
     const auto unseen = std::count_if(
         look_->cells.begin(), look_->cells.end(),
         [&](const auto& cell) { return !map.IsObservedFree(cell) && !map.IsOccupied(cell); });
-    const Was &then = was_.front(), &now = was_.back();
-    const double left = (now.p_WB - look_->from.p_WB).norm();
-    if (look_->cells.empty() && !climbs_ && left < std::min(kPassesBy, 0.5 * look_->way))
-      return false;
     const auto cells = static_cast<double>(look_->cells.size());
     if (cells > 0.0 && static_cast<double>(unseen) <= kEnough * cells) return false;
     const double turn = estimation::Yaw(input.vehicle.q_WB) - look_->from.yaw;
@@ -228,8 +251,8 @@ class Scout::Impl {
     const bool stands =
         !near && IsLongAgo(then, now, true) && (then.p_WB - now.p_WB).norm() < kNearer;
     if (!in_vain && !stands && now.t < until_) return true;
-    if (climbs_ && !near) EndClimb();
-    follows_ = follows_ && !look_->cells.empty();
+    if (way_ == Way::kUp && !near) EndClimb();
+    if (passes) way_ = Way::kPlanned;
     struck_.push_back(look_->from);
     return false;
   }
@@ -243,10 +266,9 @@ class Scout::Impl {
   Eigen::Vector3d best_goal_W_ = Eigen::Vector3d::Zero();  // ... with the goal here,
   double detour_ = 0.0;                                    // and what was flown since [m]
   double most_detour_ = kDetour;
-  bool climbs_ = false;              // that is what it looks for
-  bool follows_ = false;             // or it follows the way out of the window
+  Way way_ = Way::kPlanned;
   bool up_ = false;                  // as high as it could climb, for that best
-  const Look* look_ = nullptr;       // nullptr: it flies to the goal
+  const Look* look_ = nullptr;       // where it flies to; nullptr: to the goal
   double until_ = 0.0;               // it is to be over [s]
   std::optional<int> images_there_;  // used before the first one from there
   std::vector<Viewpoint> struck_;    // looked from in vain

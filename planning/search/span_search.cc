@@ -33,7 +33,8 @@ constexpr std::array<Step, 8> kSteps = {{{1, 0, 1.0f},
                                          {-1, 1, kDiagonal},
                                          {-1, -1, kDiagonal}}};
 constexpr int kSelf = kSteps.size();  // no step at all
-constexpr float kStepsOfCell = 4.0f;  // of f, that the queue distinguishes
+constexpr float kStepsOfCell = 4.0f;  // of f, that the queue distinguishes, ...
+constexpr float kFarthest = 1e6f;     // ... up to here
 constexpr double kGateMargin = 1.0;   // of a way from the edges of a gate that has room [cells]
 
 /// A span that can be reached from another.
@@ -63,7 +64,7 @@ void SpanSearch::Queue::Clear() {
 }
 
 void SpanSearch::Queue::Push(float f, std::uint32_t address) {
-  const auto at = static_cast<std::size_t>(kStepsOfCell * f);
+  const auto at = static_cast<std::size_t>(std::min(kStepsOfCell * f, kFarthest));
   if (at >= first_.size()) first_.resize(at + 1, -1);
   entries_.push_back({address, first_[at]});
   first_[at] = static_cast<std::int32_t>(entries_.size()) - 1;
@@ -102,7 +103,7 @@ void SpanSearch::Forget(GuidePath* path) {
   path->clear();
   expansions_ = 0;
   cost_ = 0.0;
-  leaves_ = false;
+  end_ = End::kGoal;
 }
 
 SearchStatus SpanSearch::Search(const FreeSpace& space, const Eigen::Vector3d& from,
@@ -127,11 +128,11 @@ SearchStatus SpanSearch::SearchOut(const FreeSpace& space, const Eigen::Vector3d
   const bool inside = map.InWindow(goal);
   if (inside && !GridSearch::NearestFree(space, &goal)) return SearchStatus::kEndsBlocked;
   SearchStatus status = SearchStatus::kNoPath;
-  for (const End end : {End::kGoal, End::kSide}) {
+  for (const End end : {End::kGoal, End::kSide, End::kAnywhere}) {
     if ((end == End::kGoal && !inside) || status != SearchStatus::kNoPath) continue;
     status = SearchFrom(space, map.CellOf(from), goal, end, max_expansions, path, {},
                         std::numeric_limits<double>::infinity());
-    leaves_ = end == End::kSide && status == SearchStatus::kFound;
+    end_ = end;
   }
   cost_ += vertical_cost_ * map.resolution() * std::abs(level - goal.z());
   return status;
@@ -139,9 +140,8 @@ SearchStatus SpanSearch::SearchOut(const FreeSpace& space, const Eigen::Vector3d
 
 SearchStatus SpanSearch::Escape(const FreeSpace& space, const Eigen::Vector3d& from,
                                 int max_expansions) {
-  Forget(&escape_);
   const CellIndex start = space.map->CellOf(from);
-  return SearchFrom(space, start, start, End::kAnywhere, max_expansions, &escape_, {},
+  return SearchFrom(space, start, start, End::kAnywhere, max_expansions, nullptr, {},
                     std::numeric_limits<double>::infinity());
 }
 
@@ -162,7 +162,7 @@ SearchStatus SpanSearch::SearchFrom(const FreeSpace& space, CellIndex start, Cel
   goal -= map.origin();
   const SearchStatus status =
       SearchOn(start, goal, end, max_expansions, static_cast<float>(max_cost / map.resolution()));
-  if (status != SearchStatus::kFound) return status;
+  if (status != SearchStatus::kFound || path == nullptr) return status;
   cost_ *= map.resolution();
   if (end != End::kGoal) goal = {way_.back().x, way_.back().y, end_z_};
   Straighten(start.z(), goal.z());
@@ -198,7 +198,8 @@ SearchStatus SpanSearch::SearchOn(const CellIndex& start, const CellIndex& goal,
   const int top = columns_.levels() - 1;
   const auto ends = [&](std::uint32_t here, int x, int y, int id) {
     if (!out) return here == address(goal.x(), goal.y(), goal_id);
-    if (end == End::kAnywhere && columns_.At(x, y, id).high == top) return true;
+    const FreeSpan& span = columns_.At(x, y, id);
+    if (end == End::kAnywhere && (span.high == top || span.low == 0)) return true;
     return x == 0 || y == 0 || x == nx - 1 || y == ny - 1;
   };
   const auto see = [&](const Reached& at, float g, int from_id) {
@@ -227,7 +228,11 @@ SearchStatus SpanSearch::SearchOn(const CellIndex& start, const CellIndex& goal,
     const int x = static_cast<int>(here) % nx, y = row % ny, id = row / ny, z = node.z;
     if (ends(here, x, y, id)) {
       end_z_ = z;
-      cost_ = node.g + to_goal(out ? x : goal.x(), out ? y : goal.y(), z);
+      const FreeSpan& last = columns_.At(x, y, id);
+      if (end == End::kAnywhere && last.high == top) end_z_ = top;
+      if (end == End::kAnywhere && last.high != top && last.low == 0) end_z_ = 0;
+      cost_ = node.g + vertical_cost_ * static_cast<float>(std::abs(end_z_ - z)) +
+              to_goal(out ? x : goal.x(), out ? y : goal.y(), end_z_);
       TraceBack(x, y, id);
       return SearchStatus::kFound;
     }

@@ -41,18 +41,19 @@ class SpanSearch {
                       double max_cost = std::numeric_limits<double>::infinity());
 
   /// The same to a place that may be out of the window, or be reached only from there: then the path ends where it
-  /// leaves the window, and the rest costs as much as over nothing but free space.
+  /// leaves the window, at a side, or else at its top or bottom. The rest costs as much as over nothing but free space.
   SearchStatus SearchOut(const FreeSpace& space, const Eigen::Vector3d& from,
                          const Eigen::Vector3d& to, int max_expansions, GuidePath* path);
 
-  /// Whether any way leads out of the window, at its sides or its top: kFound. kNoPath: what blocks is all around.
+  /// Whether any way leads out of the window: kFound. kNoPath: what blocks is all around.
   SearchStatus Escape(const FreeSpace& space, const Eigen::Vector3d& from, int max_expansions);
 
   int expansions() const { return expansions_; }
   /// Of the path that was found last [m].
   double cost() const { return cost_; }
-  /// It leaves the window.
-  bool leaves() const { return leaves_; }
+  /// Where that path ends.
+  enum class End { kGoal, kSide, kAnywhere };
+  End end() const { return end_; }
 
  private:
   // The nodes to be expanded. Those with the least f come first, to a quarter of a cell, and of these the last that
@@ -85,8 +86,6 @@ class SpanSearch {
     std::uint8_t step = 0;     // by which it was reached; kSelf: the start ...
     std::uint8_t from_id = 0;  // ... from this span of the column there
   };
-  // Where a way ends: at the goal, at a side of the window, at a side or the top.
-  enum class End { kGoal, kSide, kAnywhere };
   // A span of the way that was found.
   struct Place {
     int x, y;
@@ -115,12 +114,11 @@ class SpanSearch {
   std::vector<Node> nodes_;
   Queue queue_;
   std::vector<Place> way_;
-  GuidePath escape_;
   std::vector<Gate> gates_;
   std::uint32_t search_ = 0;
   int expansions_ = 0;
   double cost_ = 0.0;
-  bool leaves_ = false;
+  End end_ = End::kGoal;
   int end_z_ = 0;  // at which it ends [cells]
 };
 

@@ -89,7 +89,7 @@ TEST_F(Survey, ThePotentialIsTheShortestWay) {
   EXPECT_GT(lookout_.Length(space_, at_, at_ + Eigen::Vector3d(5.0, 0.0, 0.0)), 7.0);
   Wall(2.5, 3.0, 13.0);
   EXPECT_GT(lookout_.Length(space_, at_, at_ + Eigen::Vector3d(5.0, 0.0, 0.0)), 12.0);
-  EXPECT_TRUE(lookout_.leaves()) << "to both sides the wall may end there";
+  EXPECT_EQ(lookout_.end(), SpanSearch::End::kSide) << "to both sides the wall may end there";
 }
 
 TEST_F(Survey, ClosedIsWhatEnclosesTheVehicleOrTheGoal) {
@@ -140,11 +140,14 @@ TEST_F(Survey, TheFarPotentialKnowsWhatIsOutOfTheWindow) {
   const double far = lookout_.FarLength(space_, here, goal);
   EXPECT_GT(far, 8.0 + 40.0);
   EXPECT_LT(far, 60.0);
-  EXPECT_TRUE(lookout_.leaves());
+  EXPECT_EQ(lookout_.end(), SpanSearch::End::kSide);
   map_.MarkRestFree();
   lookout_.NoteNeeded(Hull(), here);
-  EXPECT_GT(lookout_.Onwards()->way, 8.0 + 12.0) << "out and around, all that is in the window";
-  EXPECT_GT(std::abs(lookout_.Onwards()->from.p_WB.y()), 4.0);
+  EXPECT_GT(lookout_.seen(), 8.0 + 12.0) << "out and around, all that is in the window";
+  const Look* onwards = lookout_.Onwards({});
+  ASSERT_TRUE(onwards);
+  EXPECT_GT(std::abs(onwards->from.p_WB.y()), 4.0);
+  EXPECT_FALSE(lookout_.Onwards({onwards->from})) << "it is struck";
 }
 
 TEST_F(Survey, WhatWasSeenIsNotNeeded) {

@@ -49,6 +49,18 @@ TEST(NoWay, AClosedWallHasNoneAndNeitherHasAPlaceOutside) {
   EXPECT_TRUE(FindNarrowPlace(open, kFrom, {2.0, 0.0, -30.0}, -9.0, 9.0)) << "below the window";
 }
 
+TEST(NoWay, AnEndThatIsOccupiedHasNoWay) {
+  OccupancyMap map(SmallMap(0.0));
+  map.SetOccupied(kTo);
+  EXPECT_FALSE(FindNarrowPlace(map, kFrom, kTo, -9.0, 9.0));
+  EXPECT_FALSE(FindNarrowPlace(map, kTo, kFrom, -9.0, 9.0));
+}
+
+TEST(NoWay, EndsCountBetweenFloorAndCeiling) {
+  const OccupancyMap map(SmallMap(0.0));
+  EXPECT_TRUE(FindNarrowPlace(map, {-2.0, 0.0, -1.5}, {2.0, 0.0, 1.5}, -0.5, 0.5));
+}
+
 TEST(NoWay, NothingLeadsBelowTheFloor) {
   OccupancyMap map(SmallMap(0.0));
   for (int j = -32; j < 32; ++j) {  // open below -0.5 m

@@ -9,6 +9,7 @@
 
 #include "planning/test/replanner_fixtures.h"
 #include "touchdown/planning/replan/goal.h"
+#include "touchdown/solvers/allocation_count.h"
 
 namespace touchdown::planning {
 namespace {
@@ -255,6 +256,85 @@ TEST_F(Scouted, FollowsTheWayOutOfTheWindow) {
     EXPECT_GT(side * (look->p_WB - p_).y(), 0.0) << t_;
   }
   EXPECT_GT(farthest, 5.0);
+}
+
+TEST_F(Scouted, WhatThePlannerRefusesIsPassedBy) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (int i = 0; i < 100; ++i) {
+    pad_ = std::make_unique<MovingGoal>([nan](const Taylor& t) {
+      return MovingGoal::Position{nan + 0.0 * t, 0.05 + 0.0 * t, 2.05 + 0.0 * t};
+    });
+    EXPECT_FALSE(Step());
+  }
+}
+
+// The place on the way is not reached: it looks from elsewhere, or nowhere, not there for ever.
+TEST_F(Scouted, AWayOutThatFailsIsStruckOff) {
+  map_.MarkRestFree();
+  WallAcross(&map_, 3.05);
+  std::vector<Viewpoint> places;
+  for (int i = 0; i < 1200; ++i) {
+    look_ = Step();
+    const bool is_new = look_ && (places.empty() || places.back().p_WB != look_->p_WB);
+    if (is_new) places.push_back(*look_);
+  }
+  ASSERT_FALSE(places.empty());
+  EXPECT_LT(places.size(), 4U);
+}
+
+// A pen that drives: it may come out. Asked at once after a look, too.
+TEST_F(Scouted, APenThatDrivesIsNoNoWay) {
+  map_.MarkRestFree();
+  pad_ = std::make_unique<MovingGoal>([](const Taylor& t) {
+    return MovingGoal::Position{8.0 + 0.0 * t, 0.05 + 0.25 * t, 2.05 + 0.0 * t};
+  });
+  for (int i = 0; i < 100; ++i) {
+    const Eigen::Vector3d goal = pad_->At(t_).p_WP;
+    for (double a = -1.5; a <= 1.5; a += 0.1) {
+      for (double z = 0.05; z < 5.3; z += 0.1) {
+        for (const double b : {-1.5, 1.5}) {
+          map_.SetOccupied({goal.x() + a, goal.y() + b, z});
+          map_.SetOccupied({goal.x() + b, goal.y() + a, z});
+        }
+      }
+    }
+    look_ = Step();
+    if (look_) GoThere();
+    EXPECT_FALSE(scout_.no_way()) << t_;
+  }
+}
+
+// What was flown beside the goal is no detour to the next one.
+TEST_F(Scouted, NoEarlyClimbAfterATimeAtTheGoal) {
+  map_.MarkRestFree();
+  for (int i = 0; i < 2000; ++i) {
+    pad_ = std::make_unique<GoalAt>(p_);
+    Step({i / 10 % 2 == 0 ? 0.3 : -0.3, 0.0, 0.0});
+  }
+  WallAcross(&map_, p_.x() + 3.0);
+  pad_ = std::make_unique<GoalAt>(p_ + Eigen::Vector3d(8.0, 0.0, 0.0));
+  for (int i = 0; i < 60; ++i) {
+    look_ = Step({0.0, i / 30 % 2 == 0 ? 1.0 : -1.0, 0.0});
+    EXPECT_FALSE(look_ && look_->p_WB.z() > p_.z() + 0.5) << i;
+  }
+}
+
+TEST_F(Scouted, DoesNotAllocateInFlight) {
+  if (solvers::AllocationCount() < 0) GTEST_SKIP() << "a sanitizer owns the heap";
+  map_.MarkRestFree();
+  WallAcross(&map_, 3.05);
+  scout_.Prepare(map_);
+  long allocations = 0;
+  for (int i = 0; i < 1500; ++i) {
+    t_ += 0.1;
+    cameras_[0].images += i % 200 < 100;  // and none for long
+    ReplanInput input = Input(p_, *pad_, t_);
+    input.endpoint.height = input.endpoint.height_floor = 0.0;
+    const long before = solvers::AllocationCount();
+    scout_.Step(input, cameras_, map_, true);
+    allocations += solvers::AllocationCount() - before;
+  }
+  EXPECT_EQ(allocations, 0);
 }
 
 // Away from a goal to which nothing is in the way: no detour, however long.

@@ -206,12 +206,35 @@ TEST(SpanSearch, AGoalThatIsReachedFromOutsideOnly) {
   GuidePath path;
   const Eigen::Vector3d from(0.05, 0.05, 0.05), goal(2.05, 0.05, 0.05);
   ASSERT_EQ(search.SearchOut(space, from, goal, kEnough, &path), SearchStatus::kFound);
-  EXPECT_TRUE(search.leaves());
+  EXPECT_EQ(search.end(), SpanSearch::End::kSide);
   EXPECT_LT(path.back().x(), 1.0);
   EXPECT_GT(search.cost(), 2.0);
   ASSERT_EQ(search.SearchOut(space, from, {0.55, 2.05, 0.05}, kEnough, &path),
             SearchStatus::kFound);
-  EXPECT_FALSE(search.leaves());
+  EXPECT_EQ(search.end(), SpanSearch::End::kGoal);
+}
+
+// Walls all around, from the window's bottom to its top, or with one end closed.
+TEST(SpanSearch, OutOfAShaftTheWayLeadsThroughItsOpenEnd) {
+  for (const double open : {-1.6, 1.6}) {
+    OccupancyMap map(SmallMap(0.0));
+    const double low = open < 0.0 ? -1.6 : -1.0, high = open < 0.0 ? 1.0 : 1.6;
+    for (const double side : {-1.0, 0.9}) {
+      Fill(&map, {side, -1.0, low}, {side + 0.1, 1.0, high});
+      Fill(&map, {-1.0, side, low}, {1.0, side + 0.1, high});
+    }
+    const double end = open < 0.0 ? high - 0.1 : low;
+    Fill(&map, {-1.0, -1.0, end}, {1.0, 1.0, end + 0.1});
+    const FreeSpace space = SpaceOf(map);
+    SpanSearch search(kPlain);
+    GuidePath path;
+    const Eigen::Vector3d from(0.05, 0.05, 0.05), goal(2.05, 0.05, 0.05);
+    ASSERT_EQ(search.SearchOut(space, from, goal, kEnough, &path), SearchStatus::kFound) << open;
+    EXPECT_EQ(search.end(), SpanSearch::End::kAnywhere);
+    EXPECT_NEAR(path.back().z(), open < 0.0 ? -1.55 : 1.55, 1e-9);
+    EXPECT_NEAR(search.cost(), 2.0 + 2.0 * 2.0 * 1.55, 0.3);
+    EXPECT_EQ(search.Escape(space, from, kEnough), SearchStatus::kFound);
+  }
 }
 
 TEST(SpanSearch, NothingEscapesFromAClosedBoxButAnyHoleWillDo) {
@@ -239,7 +262,7 @@ TEST(SpanSearch, NothingEscapesFromAClosedBoxButAnyHoleWillDo) {
   const auto hole = [](const CellIndex& cell) {
     return [cell](OccupancyMap* map) { map->SetState(cell, CellState::kFree); };
   };
-  for (const CellIndex& cell : {CellIndex(10, 3, 2), {-4, -10, 0}, {1, 2, 10}}) {
+  for (const CellIndex& cell : {CellIndex(10, 3, 2), {-4, -10, 0}, {1, 2, 10}, {-3, 0, -10}}) {
     EXPECT_EQ(escape(hole(cell)), SearchStatus::kFound) << cell.transpose();
   }
 }

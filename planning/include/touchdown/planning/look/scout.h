@@ -42,12 +42,12 @@ class Scout {
   /// Where to look from instead of flying to the target of `input`; none: the vehicle makes progress. Call it before
   /// every replanning step, with the step's input.
   /// @param may_look false: the step only counts as time without progress.
-  /// @pre `input` has a pad or goal, and passes the replanner's checks. Does not allocate after Prepare, unless very much is struck off.
+  /// @pre `input` has a pad or goal. One that the replanner refuses is passed by. Does not allocate after Prepare, unless very much is struck off.
   std::optional<Viewpoint> Step(const ReplanInput& input, const std::vector<LookCamera>& cameras,
                                 const OccupancyMap& map, bool may_look);
 
-  /// It knows no way to the goal of the last Step, which stands, and has no place left to look from. It goes on: what is
-  /// seen may open one. Empty: a way is known, or it still looks.
+  /// What the map knows to block encloses the vehicle, or the goal of the last Step, which stands. What is seen later
+  /// may open a way. Empty: there may be one.
   const std::optional<NoWay>& no_way() const;
 
  private:
