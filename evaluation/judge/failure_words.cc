@@ -53,7 +53,7 @@ std::string NoWaySentence(const TrialResult& result) {
   if (!no_way.narrowest) return text;
   const Eigen::Vector3d& at = no_way.narrowest->p_W;
   return text + fmt::format(
-                    " The widest one is {:.1f} m wide at its narrowest place, [{:.1f}, {:.1f}, "
+                    " The widest passage that may be left is {:.1f} m wide, at [{:.1f}, {:.1f}, "
                     "{:.1f}] m; {:.1f} m are needed.",
                     no_way.narrowest->width, at.x(), at.y(), at.z(), no_way.needed_m);
 }

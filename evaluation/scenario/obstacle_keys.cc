@@ -56,7 +56,8 @@ SchemaKey<WallObstacle> PointsKey() {
           [range](WallObstacle& wall, const YAML::Node& node, const Where& where) {
             const int size = node.IsSequence() ? static_cast<int>(node.size()) : 0;
             if (size < 4 || size % 2 != 0) {
-              RefuseValue(where, "points", "a list of x and y of two points or more", node);
+              RefuseValue(where, "points", "a flat list x, y, x, y, ... of two points or more",
+                          node);
             }
             const Eigen::VectorXd values = ReadVector(node, where, "points", size, range);
             wall.points.assign(values.begin(), values.end());

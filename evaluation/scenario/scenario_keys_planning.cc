@@ -99,7 +99,8 @@ void AddPlanningKeys(KeyList& keys) {
                                   TOUCHDOWN_AT(planning.max_duration)));
   keys.push_back(
       Whole("planning.max_work", 1000, 1000000,
-            "planner landing: what a step may do at most, in counted units, of which 10,000 take "
+            "planner landing: what a step may do at most (from rest four times that), in counted "
+            "units, of which 10,000 take "
             "1.7 to 3.6 ms; if it finds no plan within that, the next step goes on from there",
             TOUCHDOWN_AT(planning.max_work)));
   keys.push_back(Choice("planning.endpoint_velocity", {"pad", "rest"},

@@ -33,10 +33,11 @@ TEST(FailureWords, NoWayIsSaidWithWhatWasTried) {
             " From 12.3 s on the vehicle knew no way: after 1 look, what it had seen closes every "
             "one.");
   result.no_way = {12.34, 4, planning::NarrowPlace{{4.0, 0.1, 0.7}, 0.9}, 1.1};
-  EXPECT_EQ(NoWaySentence(result),
-            " From 12.3 s on the vehicle knew no way: after 4 looks, what it had seen closes every "
-            "one. The widest one is 0.9 m wide at its narrowest place, [4.0, 0.1, 0.7] m; 1.1 m "
-            "are needed.");
+  EXPECT_EQ(
+      NoWaySentence(result),
+      " From 12.3 s on the vehicle knew no way: after 4 looks, what it had seen closes every "
+      "one. The widest passage that may be left is 0.9 m wide, at [4.0, 0.1, 0.7] m; 1.1 m are "
+      "needed.");
 }
 
 TEST(FailureWords, WhatTheLandingConditionLackedMostAndAtTheEnd) {

@@ -256,6 +256,13 @@ const Look* Lookout::Onwards(const std::vector<Viewpoint>& struck) {
   return &look_;
 }
 
+const Look* Lookout::Around(const Eigen::Vector3d& from, double yaw) {
+  look_.from = {from, yaw + 0.5 * std::numbers::pi};
+  look_.way = 0.0;
+  look_.cells.clear();
+  return &look_;
+}
+
 const Look* Lookout::Highest(const HullSpace& hull, const Eigen::Vector3d& from,
                              const Eigen::Vector3d& goal) {
   begin_ = {from, 0.0};

@@ -70,6 +70,9 @@ class Lookout {
   /// Choose. @pre NoteNeeded
   const Look* Onwards(const std::vector<Viewpoint>& struck);
 
+  /// From here to the left. As Choose.
+  const Look* Around(const Eigen::Vector3d& from, double yaw);
+
   /// The highest place to which cells lead that were seen free, turned to the goal. As Choose.
   const Look* Highest(const HullSpace& hull, const Eigen::Vector3d& from,
                       const Eigen::Vector3d& goal);

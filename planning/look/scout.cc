@@ -148,7 +148,11 @@ class Scout::Impl {
     if (detour_ > most_detour_) return Climb(hull);
     if (lookout_.end() == SpanSearch::End::kGoal) way_ = Way::kPlanned;
     if (progress && way_ == Way::kPlanned) return no_way_.reset();
-    if (lookout_.Closed(space, now.p_WB, now.goal_W)) return NoteNoWay();
+    if (lookout_.Closed(space, now.p_WB, now.goal_W)) {
+      NoteNoWay();
+      look_ = lookout_.Around(now.p_WB, estimation::Yaw(input.vehicle.q_WB));
+      return;
+    }
     no_way_.reset();
     if (!std::isfinite(length_)) return;
     if (lookout_.end() == SpanSearch::End::kAnywhere && !up_) return Climb(hull);
@@ -182,7 +186,6 @@ class Scout::Impl {
     const bool nearer = length_ < best_ - kNearer;
     if (nearer) {
       best_ = length_;
-      looks_ = 0;
       way_ = Way::kPlanned;
     }
     if (nearer || straight) {
@@ -213,8 +216,10 @@ class Scout::Impl {
   /// The vehicle is nearer to where the goal was then, or to where it is now. The best moves with the goal.
   bool MadeProgress(const FreeSpace& space) {
     const Was &then = was_.front(), &now = was_.back();
+    // A way is not shorter by more than what lies between where it begins.
+    const bool moved = lookout_.Least(*space.map, then.p_WB, now.p_WB) >= kNearer;
     const auto nearer = [&](const Eigen::Vector3d& goal) {
-      const double before = then.t < now.t ? lookout_.Length(space, then.p_WB, goal) : 0.0;
+      const double before = moved ? lookout_.Length(space, then.p_WB, goal) : 0.0;
       length_ = lookout_.Length(space, now.p_WB, goal);
       return length_ < before - kNearer;
     };
@@ -224,8 +229,8 @@ class Scout::Impl {
     const bool to_then = goal_moved && nearer(then.goal_W);
     const bool to_now = nearer(now.goal_W);
     if (best_moved) {
-      const double moved = length_ - there;
-      best_ = std::isfinite(moved) ? best_ + moved : std::numeric_limits<double>::infinity();
+      const double longer = length_ - there;
+      best_ = std::isfinite(longer) ? best_ + longer : std::numeric_limits<double>::infinity();
       best_goal_W_ = now.goal_W;
     }
     return to_now || to_then;
@@ -253,7 +258,7 @@ class Scout::Impl {
     if (!in_vain && !stands && now.t < until_) return true;
     if (way_ == Way::kUp && !near) EndClimb();
     if (passes) way_ = Way::kPlanned;
-    struck_.push_back(look_->from);
+    if (passes || cells > 0.0) struck_.push_back(look_->from);
     return false;
   }
 
@@ -272,7 +277,7 @@ class Scout::Impl {
   double until_ = 0.0;               // it is to be over [s]
   std::optional<int> images_there_;  // used before the first one from there
   std::vector<Viewpoint> struck_;    // looked from in vain
-  int looks_ = 0;                    // since the last best
+  int looks_ = 0;                    // so far
   std::optional<NoWay> no_way_;
 };
 

@@ -127,10 +127,15 @@ SearchStatus SpanSearch::SearchOut(const FreeSpace& space, const Eigen::Vector3d
   goal.z() = std::clamp(level, lowest, lowest + map.size().z() - 1);
   const bool inside = map.InWindow(goal);
   if (inside && !GridSearch::NearestFree(space, &goal)) return SearchStatus::kEndsBlocked;
+  // A goal that is enclosed is soon known to be; from outside all would have to be searched.
+  const CellIndex start = map.CellOf(from);
+  const bool enclosed =
+      inside && Escape(space, map.CentreOf(goal), max_expansions) == SearchStatus::kNoPath &&
+      !Passed(start);
   SearchStatus status = SearchStatus::kNoPath;
   for (const End end : {End::kGoal, End::kSide, End::kAnywhere}) {
-    if ((end == End::kGoal && !inside) || status != SearchStatus::kNoPath) continue;
-    status = SearchFrom(space, map.CellOf(from), goal, end, max_expansions, path, {},
+    if ((end == End::kGoal && (!inside || enclosed)) || status != SearchStatus::kNoPath) continue;
+    status = SearchFrom(space, start, goal, end, max_expansions, path, {},
                         std::numeric_limits<double>::infinity());
     end_ = end;
   }
@@ -140,8 +145,16 @@ SearchStatus SpanSearch::SearchOut(const FreeSpace& space, const Eigen::Vector3d
 
 SearchStatus SpanSearch::Escape(const FreeSpace& space, const Eigen::Vector3d& from,
                                 int max_expansions) {
-  const CellIndex start = space.map->CellOf(from);
-  return SearchFrom(space, start, start, End::kAnywhere, max_expansions, nullptr, {},
+  const OccupancyMap& map = *space.map;
+  const CellIndex start = map.CellOf(from);
+  // Towards the nearest side.
+  const Eigen::Array2i to_low = (start - map.origin()).head<2>();
+  const Eigen::Array2i to_high = map.size().head<2>().array() - 1 - to_low;
+  int axis = 0;
+  to_low.min(to_high).minCoeff(&axis);
+  CellIndex side = start;
+  side[axis] += to_low[axis] < to_high[axis] ? -to_low[axis] : to_high[axis];
+  return SearchFrom(space, start, side, End::kAnywhere, max_expansions, nullptr, {},
                     std::numeric_limits<double>::infinity());
 }
 
@@ -158,8 +171,9 @@ SearchStatus SpanSearch::SearchFrom(const FreeSpace& space, CellIndex start, Cel
     search_ = 1;
   }
   // From here on cells are counted from the window's lowest one.
-  start -= map.origin();
-  goal -= map.origin();
+  origin_ = map.origin();
+  start -= origin_;
+  goal -= origin_;
   const SearchStatus status =
       SearchOn(start, goal, end, max_expansions, static_cast<float>(max_cost / map.resolution()));
   if (status != SearchStatus::kFound || path == nullptr) return status;
@@ -269,6 +283,16 @@ SearchStatus SpanSearch::SearchOn(const CellIndex& start, const CellIndex& goal,
     }
   }
   return SearchStatus::kNoPath;
+}
+
+/// By the last search.
+bool SpanSearch::Passed(const CellIndex& cell) {
+  const CellIndex at = cell - origin_;
+  const Eigen::Vector2i& size = columns_.size();
+  if ((at.array() < 0).any() || (at.head<2>().array() >= size.array()).any()) return false;
+  const int id = columns_.IdAt(at);
+  const auto address = static_cast<std::size_t>((id * size.y() + at.y()) * size.x() + at.x());
+  return id >= 0 && nodes_[address].search == search_ && nodes_[address].closed;
 }
 
 /// The spans from the start to here.

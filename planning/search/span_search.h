@@ -104,6 +104,7 @@ class SpanSearch {
                           double max_cost);
   SearchStatus SearchOn(const CellIndex& start, const CellIndex& goal, End end, int max_expansions,
                         float max_cost);
+  bool Passed(const CellIndex& cell);
   void TraceBack(int x, int y, int id);
   void Straighten(double from, double to);
 
@@ -119,6 +120,7 @@ class SpanSearch {
   int expansions_ = 0;
   double cost_ = 0.0;
   End end_ = End::kGoal;
+  CellIndex origin_ = CellIndex::Zero();  // of the window
   int end_z_ = 0;  // at which it ends [cells]
 };
 

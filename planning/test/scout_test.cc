@@ -200,7 +200,10 @@ TEST_F(Scouted, WhereWhatWasSeenClosesEveryWayThereIsNone) {
   for (int y = -7; y < 8; ++y) {  // a door opens
     for (int z = 0; z < 54; ++z) map_.SetState({31, y, z}, CellState::kFree);
   }
-  for (int i = 0; i < 10; ++i) Step();
+  for (int i = 0; i < 60; ++i) {  // it looks around, and asks again
+    look_ = Step();
+    if (look_) GoThere();
+  }
   EXPECT_FALSE(scout_.no_way());
 }
 

@@ -12,7 +12,7 @@ namespace touchdown::planning {
 /// What was seen closes every way.
 struct NoWay {
   double since = 0.0;  ///< [s]
-  int looks = 0;       ///< how often it went to look since it was last nearer
+  int looks = 0;       ///< how often it had gone to look
 };
 
 /// The narrowest place of a way.
