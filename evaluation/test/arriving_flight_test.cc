@@ -47,6 +47,34 @@ TEST(ArrivingFlight, ACameraThatLooksDownSavesTheLook) {
   EXPECT_EQ(result.safety->uncertified_steps, 0);
 }
 
+// 40 m deep, up to the ceiling: the vehicle came back to its bottom for ever, and claimed no_way there.
+TEST(ArrivingFlight, OutOfADeadEndLargerThanTheWindow) {
+  TrialRecord record;
+  const TrialResult result =
+      Fly("{pad: {motion: static, start: [30, 0]}, start: {position: [-14, 0, 1.5]}, timeout: 150, "
+          "planning: {ceiling: 4}, obstacles: {boxes: [{centre: [20, 0], size: [0.3, 12, 5]}, "
+          "{centre: [0, 6], size: [40, 0.3, 5]}, {centre: [0, -6], size: [40, 0.3, 5]}]}}",
+          1, &record);
+  ASSERT_TRUE(result.landed()) << result.detail;
+  EXPECT_EQ(result.safety->uncertified_steps, 0);
+  const bool claimed = std::any_of(record.events.begin(), record.events.end(),
+                                   [](const auto& event) { return event.kind == "no_way"; });
+  EXPECT_FALSE(claimed);
+}
+
+// The pad in a closed box, on whose roof the vehicle could wait for ever.
+TEST(ArrivingFlight, AClosedCageAroundThePadIsNoWay) {
+  const TrialResult result =
+      Fly("{pad: {motion: static, start: [8, 0]}, start: {position: [0, 0, 1.5]}, timeout: 60, "
+          "obstacles: {boxes: [{centre: [8, 0], size: [4, 4, 0.2], base: 2.5}, "
+          "{centre: [10, 0], size: [0.2, 4, 2.5]}, {centre: [6, 0], size: [0.2, 4, 2.5]}, "
+          "{centre: [8, 2], size: [4, 0.2, 2.5]}, {centre: [8, -2], size: [4, 0.2, 2.5]}]}}",
+          1);
+  EXPECT_FALSE(result.landed());
+  ASSERT_TRUE(result.no_way) << result.detail;
+  EXPECT_GT(result.no_way->looks, 0);
+}
+
 // A room around the start with a gap of a metre, less than a plan passes.
 TEST(ArrivingFlight, ARoomWithADoorThatIsTooNarrowIsNoWay) {
   TrialRecord record;
