@@ -303,9 +303,10 @@ TEST(Program, AStepIsAskedAgainWithAnotherBudget) {
 TEST(Program, AFlightAndAStepNameTheTermThatForbidsAPlan) {
   // A cone over the pad that begins far from it: its rows cannot be kept.
   const auto call = [](std::vector<const char*> words) {
-    for (const char* key : {"terms.approach_corridor.hard=true", "terms.approach_corridor.span=60",
-                            "terms.approach_corridor.angle_deg=5", "solver.limits=hard",
-                            "terms.approach_corridor.radius=0.05", "timeout=2"}) {
+    for (const char* key :
+         {"terms.approach_corridor.hard=true", "terms.approach_corridor.span=60",
+          "terms.approach_corridor.angle_deg=5", "solver.limits=hard",
+          "terms.approach_corridor.radius=0.05", "timeout=2", "planning.max_work=2500"}) {
       words.insert(words.end(), {"--set", key});
     }
     return Call(words);

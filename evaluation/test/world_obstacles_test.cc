@@ -200,7 +200,7 @@ TEST_F(WorldObstacles, OtherFilesAreRefusedToo) {
   EXPECT_THAT(Refusal("obstacles:\n  boxes:\n    - {centre: [9, 9], size: [100, 1.0e-8, 1], turn_deg: [1, 0, 0]}\n"),
               AllOf(HasSubstr("world.yaml:3: obstacles.boxes[0]"), HasSubstr("no area")));
   EXPECT_THAT(Refusal("obstacles: {walls: [{points: [1, 2, 3]}]}\n"),
-              HasSubstr("x and y of two points or more"));
+              HasSubstr("a flat list x, y, x, y, ... of two points or more"));
 }
 
 TEST_F(WorldObstacles, WhatStandsOnTheStartOrInThePadsWayIsRefused) {

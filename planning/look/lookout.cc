@@ -191,6 +191,24 @@ bool Lookout::NoteNeeded(const HullSpace& hull, const Eigen::Vector3d& from) {
   return !needed_.empty();
 }
 
+bool Lookout::NoteDoubted(const FreeSpace& space, const Eigen::Vector3d& goal) {
+  const OccupancyMap& map = *space.map;
+  needed_.clear();
+  if (!space.Blocked(goal)) return false;
+  const double reach = map.options().inflation_radius + map.resolution();
+  const CellIndex low = map.CellOf(goal.array() - reach), high = map.CellOf(goal.array() + reach);
+  for (int z = low.z(); z <= high.z(); ++z) {
+    for (int y = low.y(); y <= high.y(); ++y) {
+      for (int x = low.x(); x <= high.x(); ++x) {
+        const CellIndex cell(x, y, z);
+        const bool near = (map.CentreOf(cell) - goal).norm() < reach;
+        if (near && map.IsOccupied(cell)) needed_.push_back({cell, 1.0});
+      }
+    }
+  }
+  return !needed_.empty();
+}
+
 /// Adds the places to which cells lead that were seen free, the nearest first: few far apart in the open, more where it
 /// is narrow.
 void Lookout::Flood(const HullSpace& hull, const Place& from) {

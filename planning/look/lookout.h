@@ -57,6 +57,9 @@ class Lookout {
   /// False: there are none. @pre the last Length, from the same place, was finite
   bool NoteNeeded(const HullSpace& hull, const Eigen::Vector3d& from);
 
+  /// Notes the cells instead that are known to block the goal's place. False: there are none.
+  bool NoteDoubted(const FreeSpace& space, const Eigen::Vector3d& goal);
+
   /// How far that way leads through cells that were seen free [m].
   double seen() const { return seen_until_.way; }
 

@@ -29,6 +29,7 @@ constexpr double kOnwards = 1.0;  // is worth to be followed before cells are lo
 constexpr double kPassesBy = 4.0;  // the places that it follows: they are not stops [m]
 constexpr std::size_t kUsualSteps = 1000, kUsualStruck = 100;
 
+constexpr int kTurnsAround = 4;                  // on the spot, to see all around
 constexpr double kNear = 0.3, kTurnedTo = 0.2;   // of a viewpoint [m], [rad]
 constexpr int kLooks = 3;                        // images that are used there
 constexpr double kEnough = 0.05;                 // of its cells may stay unseen
@@ -67,8 +68,7 @@ class Scout::Impl {
       was_.push_back(now);
     }
     if (look_) return look_->from;
-    const bool asks =
-        IsLongAgo(was_.front(), now, false) && now.t >= asked_t_ + kAsksEvery && !at_goal;
+    const bool asks = IsLongAgo(was_.front(), now, false) && now.t >= asked_t_ + kAsksEvery;
     if (!may_look || !(asks || way_ != Way::kPlanned)) return std::nullopt;
     asked_t_ = now.t;
     Search(input, cameras, map);
@@ -150,9 +150,12 @@ class Scout::Impl {
     if (progress && way_ == Way::kPlanned) return no_way_.reset();
     if (lookout_.Closed(space, now.p_WB, now.goal_W)) {
       NoteNoWay();
-      look_ = lookout_.Around(now.p_WB, estimation::Yaw(input.vehicle.q_WB));
+      if (turns_++ < kTurnsAround) {
+        look_ = lookout_.Around(now.p_WB, estimation::Yaw(input.vehicle.q_WB));
+      }
       return;
     }
+    turns_ = 0;
     no_way_.reset();
     if (!std::isfinite(length_)) return;
     if (lookout_.end() == SpanSearch::End::kAnywhere && !up_) return Climb(hull);
@@ -164,7 +167,10 @@ class Scout::Impl {
       needs = lookout_.NoteNeeded(hull, now.p_WB);
       if (lookout_.seen() > kOnwards) look_ = lookout_.Onwards(struck_);
     }
-    if (look_ != nullptr || !needs) return;
+    if (look_ != nullptr) return;
+    // All was seen, and something is where the goal is: it may be gone, or never was.
+    doubts_ = !needs && lookout_.NoteDoubted(space, now.goal_W);
+    if (!needs && !doubts_) return;
     look_ = lookout_.Choose(hull, cameras, input.vehicle, input.pull_W, struck_);
     if (look_ == nullptr) struck_.clear();  // all were tried: again
   }
@@ -242,9 +248,10 @@ class Scout::Impl {
     const double left = (now.p_WB - look_->from.p_WB).norm();
     const bool passes = way_ == Way::kOut && look_->cells.empty();
     if (passes && left < std::min(kPassesBy, 0.5 * look_->way)) return false;
-    const auto unseen = std::count_if(
-        look_->cells.begin(), look_->cells.end(),
-        [&](const auto& cell) { return !map.IsObservedFree(cell) && !map.IsOccupied(cell); });
+    const auto unseen =
+        std::count_if(look_->cells.begin(), look_->cells.end(), [&](const auto& cell) {
+          return !map.IsObservedFree(cell) && (doubts_ || !map.IsOccupied(cell));
+        });
     const auto cells = static_cast<double>(look_->cells.size());
     if (cells > 0.0 && static_cast<double>(unseen) <= kEnough * cells) return false;
     const double turn = estimation::Yaw(input.vehicle.q_WB) - look_->from.yaw;
@@ -258,7 +265,8 @@ class Scout::Impl {
     if (!in_vain && !stands && now.t < until_) return true;
     if (way_ == Way::kUp && !near) EndClimb();
     if (passes) way_ = Way::kPlanned;
-    if (passes || cells > 0.0) struck_.push_back(look_->from);
+    if (struck_.size() == kUsualStruck) struck_.erase(struck_.begin());
+    struck_.push_back(look_->from);
     return false;
   }
 
@@ -272,6 +280,8 @@ class Scout::Impl {
   double detour_ = 0.0;                                    // and what was flown since [m]
   double most_detour_ = kDetour;
   Way way_ = Way::kPlanned;
+  int turns_ = 0;                    // on the spot, since there is no way
+  bool doubts_ = false;              // of cells that are known to block
   bool up_ = false;                  // as high as it could climb, for that best
   const Look* look_ = nullptr;       // where it flies to; nullptr: to the goal
   double until_ = 0.0;               // it is to be over [s]

@@ -7,6 +7,7 @@ namespace {
 
 const Eigen::Vector3d kClimbAfterMiss(0.0, 0.0, 0.5);  // of a landing whose deck is gone [m]
 const Eigen::Vector3d kNoShift(0.0, 0.0, 0.0);
+constexpr double kNearMiddle = 0.2;  // of a deck, where a contact is not put off [m]
 
 }  // namespace
 
@@ -15,6 +16,13 @@ bool LandsSoon(const FlightPair& committed, double t0, const EndpointTarget& end
   return hull.pad != nullptr && endpoint.leads_to_contact() &&
          endpoint.may_touch(hull.foot_depth) && committed.Lands() &&
          ContactTime(committed.curve, t0, hull) - t0 < kLastStretch;
+}
+
+bool LandsWell(const FlightPair& committed, double t0, const HullSpace& hull) {
+  if (Fallback::LookAtLanding(committed, t0, hull) != Fallback::Landing::kHolds) return false;
+  const double t = ContactTime(committed.curve, t0, hull);
+  const Eigen::Vector3d off = committed.curve.EvaluateOnward(t).p_WB - hull.pad->MeanAt(t).p_WP;
+  return off.head<2>().norm() < kNearMiddle;
 }
 
 Fallen FallbackLadder::StepDown(const FallbackFacts& facts, ReplanResult* result) {

@@ -37,6 +37,9 @@ struct [[nodiscard]] Fallen {
 bool LandsSoon(const FlightPair& committed, double t0, const EndpointTarget& endpoint,
                const HullSpace& hull);
 
+/// That contact is soft, and near the deck's middle.
+bool LandsWell(const FlightPair& committed, double t0, const HullSpace& hull);
+
 /// What is flown if no plan was certified. The first of these that is proven:
 /// 1. the committed landing;
 /// 2. the committed curve with a newer stop;

@@ -437,8 +437,7 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
         !facts.lands_soon && fallback_.GoesOn(FactsFor(input, start, hull), &result_)) {
       return reason;
     }
-    facts.lands_well = facts.lands_soon && Fallback::LookAtLanding(next_, input.t_start, hull) ==
-                                               Fallback::Landing::kHolds;
+    facts.lands_well = facts.lands_soon && LandsWell(next_, input.t_start, hull);
     const AttemptDecision decision =
         NextAttempt(attempt, {reason, attempt_.duration()}, facts, options_.constants);
     if (attempt_.spent()) {

@@ -110,11 +110,19 @@ TEST_F(Scouted, NotWhereAllThatIsNeededWasSeen) {
 
 TEST_F(Scouted, NotAtTheGoal) {
   p_ = pad_->At(0.0).p_WP + Eigen::Vector3d(0.2, 0.0, 0.0);
+  map_.MarkFree(p_, 2.5);
   EXPECT_TRUE(std::isinf(FirstLook()));
 }
 
 TEST_F(Scouted, NotWhileItComesNearer) {
   for (int i = 0; i < 100; ++i) EXPECT_FALSE(Step({0.2, 0.0, 0.0})) << t_;
+}
+
+// Without what its own stop needs there is no plan at the goal, either: it looked nowhere in an open field.
+TEST_F(Scouted, AtTheGoalIfItIsAmongUnseenCells) {
+  pad_ = std::make_unique<GoalAt>(p_ + Eigen::Vector3d(0.2, 0.0, 0.0));
+  for (int z = 12; z < 18; ++z) map_.SetState({2, 0, z}, CellState::kUnknown);
+  EXPECT_LE(FirstLook(), 3.5);
 }
 
 // To and fro is no progress: rest is not waited for.
@@ -269,6 +277,18 @@ TEST_F(Scouted, WhatThePlannerRefusesIsPassedBy) {
     });
     EXPECT_FALSE(Step());
   }
+}
+
+// What blocks the goal's place may never have been there.
+TEST_F(Scouted, LooksAtWhatBlocksTheGoal) {
+  map_.MarkRestFree();
+  map_.SetOccupied(pad_->At(0.0).p_WP);
+  p_ = pad_->At(0.0).p_WP - Eigen::Vector3d(2.0, 0.0, 0.0);
+  FirstLook();
+  ASSERT_TRUE(look_);
+  EXPECT_NEAR(std::cos(look_->yaw - std::atan2(0.0, 8.0 - look_->p_WB.x())), 1.0, 0.6);
+  map_.SetState(map_.CellOf(pad_->At(0.0).p_WP), CellState::kFree);
+  EXPECT_FALSE(Step()) << "it was seen free";
 }
 
 // The place on the way is not reached: it looks from elsewhere, or nowhere, not there for ever.

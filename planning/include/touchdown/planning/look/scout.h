@@ -42,7 +42,7 @@ class Scout {
   /// Where to look from instead of flying to the target of `input`; none: the vehicle makes progress. Call it before
   /// every replanning step, with the step's input.
   /// @param may_look false: the step only counts as time without progress.
-  /// @pre `input` has a pad or goal. One that the replanner refuses is passed by. Does not allocate after Prepare, unless very much is struck off.
+  /// @pre `input` has a pad or goal. One that the replanner refuses is passed by. Does not allocate after Prepare.
   std::optional<Viewpoint> Step(const ReplanInput& input, const std::vector<LookCamera>& cameras,
                                 const OccupancyMap& map, bool may_look);
 
