@@ -375,13 +375,13 @@ TEST(HostileFlightTest, AVehicleThatIsShutInStandsAndSaysWhy) {
   Scenario s = Room(0.0);
   s.timeout = 90.0;
   s.stand_limit = 4.0;
-  // Some first look around in the room for a while, by plans that they do not complete.
+  // They look around in the room first, some for a while, by plans that they do not complete.
   int soon = 0;
   for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6}) {
     const TrialResult stood = RunTrial(s, seed, kRegistries);
     EXPECT_EQ(stood.outcome, Outcome::kStood) << "seed " << seed << ": " << stood.detail;
     EXPECT_FALSE(stood.cause.empty()) << seed;
-    soon += stood.simulated_s < 20.0;
+    soon += stood.simulated_s < 45.0;
   }
   EXPECT_GE(soon, 4);
   s.stand_limit = 0.0;
