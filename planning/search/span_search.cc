@@ -128,7 +128,9 @@ SearchStatus SpanSearch::SearchOut(const FreeSpace& space, const Eigen::Vector3d
   const bool inside = map.InWindow(goal);
   if (inside && !GridSearch::NearestFree(space, &goal)) return SearchStatus::kEndsBlocked;
   // A goal that is enclosed is soon known to be; from outside all would have to be searched.
-  const CellIndex start = map.CellOf(from);
+  CellIndex start = map.CellOf(from);
+  if (!map.InWindow(start)) return SearchStatus::kEndsOutside;
+  if (!GridSearch::NearestFree(space, &start)) return SearchStatus::kEndsBlocked;
   const bool enclosed =
       inside && Escape(space, map.CentreOf(goal), max_expansions) == SearchStatus::kNoPath &&
       !Passed(start);
@@ -241,10 +243,10 @@ SearchStatus SpanSearch::SearchOn(const CellIndex& start, const CellIndex& goal,
     const auto row = static_cast<int>(here) / nx;
     const int x = static_cast<int>(here) % nx, y = row % ny, id = row / ny, z = node.z;
     if (ends(here, x, y, id)) {
-      end_z_ = z;
       const FreeSpan& last = columns_.At(x, y, id);
-      if (end == End::kAnywhere && last.high == top) end_z_ = top;
-      if (end == End::kAnywhere && last.high != top && last.low == 0) end_z_ = 0;
+      const bool up = end == End::kAnywhere && last.high == top;
+      const bool down = end == End::kAnywhere && !up && last.low == 0;
+      end_z_ = up ? top : down ? 0 : z;
       cost_ = node.g + vertical_cost_ * static_cast<float>(std::abs(end_z_ - z)) +
               to_goal(out ? x : goal.x(), out ? y : goal.y(), end_z_);
       TraceBack(x, y, id);

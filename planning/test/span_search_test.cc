@@ -237,6 +237,24 @@ TEST(SpanSearch, OutOfAShaftTheWayLeadsThroughItsOpenEnd) {
   }
 }
 
+// The start is in the zone of a wall, and with the goal in a closed room.
+TEST(SpanSearch, AStartBesideAWallIsInTheRoomOfItsGoal) {
+  OccupancyMap map(SmallMap(0.3));
+  for (const double side : {-1.5, 1.4}) {
+    Fill(&map, {side, -1.5, -1.6}, {side + 0.1, 1.5, 1.6});
+    Fill(&map, {-1.5, side, -1.6}, {1.5, side + 0.1, 1.6});
+  }
+  FreeSpace space = SpaceOf(map);
+  space.floor = -1.0;
+  space.ceiling = 1.0;
+  SpanSearch search(kPlain);
+  GuidePath path;
+  const Eigen::Vector3d from(-1.25, 0.05, 0.05), goal(0.55, 0.05, 0.05);
+  ASSERT_TRUE(space.Blocked(from));
+  EXPECT_EQ(search.SearchOut(space, from, goal, kEnough, &path), SearchStatus::kFound);
+  EXPECT_EQ(search.end(), SpanSearch::End::kGoal);
+}
+
 TEST(SpanSearch, NothingEscapesFromAClosedBoxButAnyHoleWillDo) {
   const Eigen::Vector3d inside(0.05, 0.05, 0.05);
   SpanSearch search(kPlain);
