@@ -203,11 +203,10 @@ class Trial {
   /// Where the widest way is narrowest is asked once, when the answer comes.
   void NoteNoWay(double t) {
     const std::optional<planning::NoWay>& no_way = onboard_.status().no_way;
-    if (no_way.has_value() == no_way_said_) return;
-    no_way_said_ = no_way.has_value();
+    if (no_way.has_value() == result_.no_way.has_value()) return;
     if (!no_way) {
-      if (result_.no_way) Note(t, "no_way", "over");
-      return result_.no_way.reset();
+      result_.no_way.reset();
+      return Note(t, "no_way", "over");
     }
     const planning::OccupancyMap& map = onboard_.map();
     result_.no_way = {no_way->since, no_way->looks, {}, planning::LeastGap(map)};
@@ -469,7 +468,6 @@ class Trial {
   planning::MovingGoal goal_;  ///< of the task go_to
   Scenario::Limits limits_;
   double floor_, ceiling_;        ///< of the body's origin [m]
-  bool no_way_said_ = false;      ///< by the vehicle
   LandingTimeTask landing_time_;  ///< at the start
   LandingJudge judge_;
   StandWatch stand_watch_;
