@@ -124,5 +124,22 @@ TEST(PadOutline, DoubtsAreSettledByWhereThePadWasThen) {
   EXPECT_TRUE(map.IsOccupied(map.CellOf(post)));
 }
 
+// A vehicle that saw the side of a pad for 20 s before it knew where that is: it became an
+// obstacle below the goal.
+TEST(PadOutline, ReturnsThatAreInDoubtForLongAreNoObstacles) {
+  OccupancyMap map(SmallMap(0.2));
+  PadOutline doubt = Deck(0.4);
+  doubt.p_WP = {0.0, 0.0, 0.45};
+  const Eigen::Vector3d side(0.05, 0.05, 0.45);
+  for (int i = 0; i < 17000; ++i) map.Integrate(DownAt(side, 0.45, 0.1 * i), doubt);
+  EXPECT_FALSE(map.IsOccupied(map.CellOf(side)));
+  EXPECT_FALSE(map.IsObservedFree(map.CellOf(side)));
+  PadOutline known = doubt;
+  known.sigma = 0.01;
+  known.p_WP.x() = 2.0;
+  map.ExplainDoubts([&](double) { return known; });
+  EXPECT_TRUE(map.IsOccupied(map.CellOf(side))) << "it was not there";
+}
+
 }  // namespace
 }  // namespace touchdown::planning

@@ -201,6 +201,7 @@ class OccupancyMap {
     CellIndex cell;
     double tolerance;  ///< of the return [m]
   };
+  static constexpr std::size_t kMostDoubts = 1 << 14;
   /// Offsets (-half..half, y, z) from an obstacle's cell.
   struct BallRow {
     int half;
@@ -257,6 +258,7 @@ class OccupancyMap {
   void ApplyReturn(std::uint8_t vote, const CellIndex& cell, const Eigen::Vector3d& p_WC, double t);
   void ApplyMisses(const Eigen::Vector3d& p_WC);
   void ApplyMissToHit(const CellIndex& cell, const Eigen::Vector3d& p_WC);
+  void ForgetOldDoubts();
   void MakeCertain(const CellIndex& cell, bool explained);
   void Forget(const CellIndex& cell, const CellBox& stays, CellBlocks* memory);
   void Set(const CellIndex& cell, Cell value);
