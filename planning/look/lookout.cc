@@ -19,8 +19,8 @@ constexpr double kSoon = 1.5;           // cells so far along it are worth a thi
 constexpr std::size_t kMostNeeded = 600;  // cells
 constexpr std::size_t kUsualPath = 2048, kUsualNeeded = 40000, kUsualNumbers = 200000,
                       kUsualCameras = 8;
-constexpr int kStrides[] = {4, 2, 1};  // cells between places
-constexpr std::size_t kManyPlaces = 500, kMostPlaces = 2000, kMostTried = 500;
+constexpr int kStrides[] = {8, 4, 2, 1};  // cells between places
+constexpr std::size_t kManyPlaces = 500, kMostPlaces = 1000, kMostTried = 500;
 constexpr std::size_t kSample = 200;  // needed cells, by which places are compared
 constexpr double kFlies = 1.0, kTurns = 1.2,
                  kStays = 0.6;                      // [m/s], [rad/s], [s]: what a look takes
@@ -74,6 +74,7 @@ Lookout::Lookout(double vertical_cost)
   queue_.reserve(27 * kMostPlaces);
   sights_.reserve(kUsualCameras);
   look_.cells.reserve(kMostNeeded + 1);
+  look_.way_W.reserve(kUsualPath);
   seen_.reserve(kMostNeeded + 1);
 }
 
@@ -171,6 +172,7 @@ bool Lookout::NoteNeeded(const HullSpace& hull, const Eigen::Vector3d& from) {
   };
   ForEachUnseen(hull, from, note);
   begin_ = seen_until_ = {from, 0.0};
+  seen_places_ = 0;
   Eigen::Vector3d before = from;
   for (const Eigen::Vector3d& place : path_) {
     const double length = (place - before).norm();
@@ -183,6 +185,7 @@ bool Lookout::NoteNeeded(const HullSpace& hull, const Eigen::Vector3d& from) {
       seen_until_ = {p, along};
       along_ = place - before;
     }
+    if (needed_.empty()) ++seen_places_;
     before = place;
   }
   const std::size_t every = 1 + needed_.size() / kMostNeeded;
@@ -238,7 +241,7 @@ void Lookout::Flood(const HullSpace& hull, const Place& from, int stride) {
   const auto farther = [](const Entry& a, const Entry& b) { return a.way > b.way; };
   numbers_.Begin(map);
   queue_.clear();
-  queue_.push_back({0.0f, CellIndex::Zero()});
+  queue_.push_back({0.0f, CellIndex::Zero(), -1});
   numbers_.At(map.CellOf(from.p_W)) = 0.0f;
   while (!queue_.empty()) {
     if (places_.size() == most) return;
@@ -247,7 +250,8 @@ void Lookout::Flood(const HullSpace& hull, const Place& from, int stride) {
     queue_.pop_back();
     const Eigen::Vector3d here = place(at.node);
     if (at.way > numbers_.At(map.CellOf(here))) continue;
-    places_.push_back({here, from.way + static_cast<double>(at.way)});
+    const auto index = static_cast<int>(places_.size());
+    places_.push_back({here, from.way + static_cast<double>(at.way), at.from});
     for (int i = 0; i < 27; ++i) {
       const CellIndex step(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
       const Eigen::Vector3d there = place(at.node + step), between = 0.5 * (here + there);
@@ -260,40 +264,54 @@ void Lookout::Flood(const HullSpace& hull, const Place& from, int stride) {
       // Beside the vehicle cells may be unseen that its camera passed.
       if (at.node.isZero() && !fits(between)) continue;
       known = way;
-      queue_.push_back({way, at.node + step});
+      queue_.push_back({way, at.node + step, index});
       std::push_heap(queue_.begin(), queue_.end(), farther);
     }
   }
 }
 
-const Look* Lookout::Onwards(const std::vector<Viewpoint>& struck) {
-  look_.from = {seen_until_.p_W, std::atan2(along_.y(), along_.x())};
-  if (IsStruck(look_.from, struck)) return nullptr;
-  look_.way = seen_until_.way;
+/// @param place  of those of the flood; -1: where the seen part of the way ends.
+const Look* Lookout::LookFrom(const Viewpoint& from, int place) {
+  const auto at = [&](int i) { return places_[static_cast<std::size_t>(i)]; };
+  look_.from = from;
+  look_.way = place < 0 ? seen_until_.way : at(place).way;
   look_.cells.clear();
+  GuidePath& way_W = look_.way_W;
+  way_W.clear();
+  for (; place >= 0; place = at(place).from) way_W.push_back(at(place).p_W);
+  if (way_W.empty() || way_W.back() == seen_until_.p_W) {
+    way_W.push_back(seen_until_.p_W);
+    way_W.insert(way_W.end(), path_.rend() - static_cast<std::ptrdiff_t>(seen_places_),
+                 path_.rend());
+    way_W.push_back(begin_.p_W);
+  }
+  std::reverse(way_W.begin(), way_W.end());
   return &look_;
 }
 
+const Look* Lookout::Onwards(const std::vector<Viewpoint>& struck) {
+  const Viewpoint from = {seen_until_.p_W, std::atan2(along_.y(), along_.x())};
+  return IsStruck(from, struck) ? nullptr : LookFrom(from, -1);
+}
+
 const Look* Lookout::Around(const Eigen::Vector3d& from, double yaw) {
-  look_.from = {from, yaw + 0.5 * std::numbers::pi};
-  look_.way = 0.0;
-  look_.cells.clear();
-  return &look_;
+  begin_ = seen_until_ = {from, 0.0};
+  seen_places_ = 0;
+  return LookFrom({from, yaw + 0.5 * std::numbers::pi}, -1);
 }
 
 const Look* Lookout::Highest(const HullSpace& hull, const Eigen::Vector3d& from,
                              const Eigen::Vector3d& goal) {
-  begin_ = {from, 0.0};
+  begin_ = seen_until_ = {from, 0.0};
+  seen_places_ = 0;
   places_.clear();
   Flood(hull, begin_);
   if (places_.empty()) return nullptr;
   const auto lower = [](const Place& a, const Place& b) { return a.p_W.z() < b.p_W.z(); };
-  const Place& highest = *std::max_element(places_.begin(), places_.end(), lower);
-  const Eigen::Vector3d to = goal - highest.p_W;
-  look_.from = {highest.p_W, std::atan2(to.y(), to.x())};
-  look_.way = highest.way;
-  look_.cells.clear();
-  return &look_;
+  const auto highest = std::max_element(places_.begin(), places_.end(), lower);
+  const Eigen::Vector3d to = goal - highest->p_W;
+  return LookFrom({highest->p_W, std::atan2(to.y(), to.x())},
+                  static_cast<int>(highest - places_.begin()));
 }
 
 void Lookout::FindCandidates(const HullSpace& hull, const std::vector<LookCamera>& cameras,
@@ -330,7 +348,7 @@ void Lookout::FindCandidates(const HullSpace& hull, const std::vector<LookCamera
         if (sight.Holds(map.CentreOf(needed_[k].cell))) worth += needed_[k].worth;
       }
     }
-    if (worth > 0.0) candidates_.push_back({worth / time, from, place.way, time});
+    if (worth > 0.0) candidates_.push_back({worth / time, from, static_cast<int>(i), time});
   }
   const auto better = [](const Candidate& a, const Candidate& b) { return a.worth > b.worth; };
   std::sort(candidates_.begin(), candidates_.end(), better);
@@ -373,8 +391,7 @@ const Look* Lookout::Choose(const HullSpace& hull, const std::vector<LookCamera>
   }
   if (best == nullptr) return nullptr;
   Trace(map, cameras, *best, pull_W, 1);
-  look_.from = best->from;
-  look_.way = best->way;
+  LookFrom(best->from, best->place);
   look_.cells = seen_;
   return &look_;
 }

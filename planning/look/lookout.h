@@ -19,7 +19,8 @@ namespace touchdown::planning {
 /// A place to look from, and what is to be seen there.
 struct Look {
   Viewpoint from;
-  double way = 0.0;              ///< to there, through cells that were seen free [m]
+  double way = 0.0;              ///< to there, through cells that were seen free [m], ...
+  GuidePath way_W;               ///< ... over these places: here first, there last
   std::vector<CellIndex> cells;  ///< in sight of it, of those that are needed
 };
 
@@ -87,16 +88,19 @@ class Lookout {
   };
   struct Place {
     Eigen::Vector3d p_W;
-    double way;  ///< to there [m]
+    double way;     ///< to there [m], ...
+    int from = -1;  ///< ... over this one; -1: none
   };
   struct Candidate {
     double worth;  ///< of a sample of needed cells in its image, over the time: nothing is between
     Viewpoint from;
-    double way, time;  ///< [m], [s]
+    int place;
+    double time;  ///< [s]
   };
 
   void Flood(const HullSpace& hull, const Place& from);
   void Flood(const HullSpace& hull, const Place& from, int stride);
+  const Look* LookFrom(const Viewpoint& from, int place);
 
   void FindCandidates(const HullSpace& hull, const std::vector<LookCamera>& cameras,
                       const estimation::VehicleState& vehicle, const Eigen::Vector3d& pull_W,
@@ -119,6 +123,7 @@ class Lookout {
   struct Entry {
     float way;
     CellIndex node;
+    int from;  // place
   };
 
   double vertical_cost_;
@@ -132,7 +137,8 @@ class Lookout {
   GuidePath path_, back_;
   std::vector<Needed> needed_;
   Place begin_,
-      seen_until_;  ///< of the way: where it begins, and where its part ends that was seen
+      seen_until_;  ///< of the way: where it begins, and where its part ends that was seen, ...
+  std::size_t seen_places_ = 0;                      ///< ... and its places until there
   Eigen::Vector3d along_ = Eigen::Vector3d::Zero();  ///< its direction there
   std::vector<Place> places_;
   std::vector<Candidate> candidates_;

@@ -31,6 +31,7 @@ constexpr std::size_t kUsualSteps = 1000, kUsualStruck = 100;
 
 constexpr int kTurnsAround = 4;                  // on the spot, to see all around
 constexpr double kNear = 0.3, kTurnedTo = 0.2;   // of a viewpoint [m], [rad]
+constexpr double kTries = 0.6, kStill = 0.15;    // a part of the way [s], [m/s]
 constexpr int kLooks = 3;                        // images that are used there
 constexpr double kEnough = 0.05;                 // of its cells may stay unseen
 constexpr double kSlowest = 0.4, kLonger = 5.0;  // on the way there [m/s], and more [s]
@@ -67,18 +68,17 @@ class Scout::Impl {
       Forget();
       was_.push_back(now);
     }
-    if (look_) return look_->from;
+    if (look_) return Aim();
     const bool asks = IsLongAgo(was_.front(), now, false) && now.t >= asked_t_ + kAsksEvery;
     if (!may_look || !(asks || way_ != Way::kPlanned)) return std::nullopt;
     asked_t_ = now.t;
     Search(input, cameras, map);
     if (look_ == nullptr) return std::nullopt;
     ++looks_;
-    was_.clear();
-    was_.push_back(now);
-    until_ = now.t + look_->way / kSlowest + kLonger;
     images_there_.reset();
-    return look_->from;
+    reached_ = 0;
+    AimAt(look_->way_W.size() - 1);
+    return Aim();
   }
 
  private:
@@ -112,12 +112,28 @@ class Scout::Impl {
     return was.t <= now.t - kPatience && (whatever_images || was.images <= now.images - kImages);
   }
 
+  /// For as long as a question takes.
+  bool Stands() const {
+    const Was& now = was_.back();
+    return IsLongAgo(was_.front(), now, true) &&
+           std::all_of(was_.begin(), was_.end(),
+                       [&](const Was& was) { return (was.p_WB - now.p_WB).norm() < kNearer; });
+  }
+
   /// But for the last that is.
   void ForgetLongAgo(const Was& now, bool whatever_images) {
     auto last = was_.begin();
     while (last + 1 != was_.end() && IsLongAgo(*(last + 1), now, whatever_images)) ++last;
     was_.erase(was_.begin(), last);
   }
+
+  /// From now on to this place on the way of the look.
+  void AimAt(std::size_t place) {
+    aim_ = place;
+    was_.erase(was_.begin(), was_.end() - 1);
+    until_ = was_.back().t + look_->way / kSlowest + kLonger;
+  }
+  Viewpoint Aim() const { return {look_->way_W[aim_], look_->from.yaw}; }
 
   /// Where the vehicle wants to be in the end: a descent that pauses wants to go on.
   Eigen::Vector3d Goal(const ReplanInput& input, const OccupancyMap& map) const {
@@ -145,7 +161,7 @@ class Scout::Impl {
     if (way_ == Way::kUp) return Climb(hull);
     const bool progress = MadeProgress(space);
     NoteBest(map);
-    if (detour_ > most_detour_) return Climb(hull);
+    if (detour_ > most_detour_) return IsStraighterAbove(space) ? Climb(hull) : EndClimb();
     if (lookout_.end() == SpanSearch::End::kGoal) way_ = Way::kPlanned;
     if (progress && way_ == Way::kPlanned) return no_way_.reset();
     if (lookout_.Closed(space, now.p_WB, now.goal_W)) {
@@ -161,17 +177,27 @@ class Scout::Impl {
     if (lookout_.end() == SpanSearch::End::kAnywhere && !up_) return Climb(hull);
     bool needs = lookout_.NoteNeeded(hull, now.p_WB);
     const bool leaves = lookout_.end() != SpanSearch::End::kGoal;
+    const bool follows = way_ == Way::kOut;
     if (leaves && (!needs || lookout_.seen() > kPassesBy)) way_ = Way::kOut;
     if (way_ == Way::kOut) {
       length_ = lookout_.FarLength(space, now.p_WB, now.goal_W);
+      if (follows && IsStraight(map)) {  // the planner needs no help
+        way_ = Way::kPlanned;
+        return;
+      }
       needs = lookout_.NoteNeeded(hull, now.p_WB);
       if (lookout_.seen() > kOnwards) look_ = lookout_.Onwards(struck_);
     }
     if (look_ != nullptr) return;
     // All was seen, and something is where the goal is: it may be gone, or never was.
     doubts_ = !needs && lookout_.NoteDoubted(space, now.goal_W);
-    if (!needs && !doubts_) return;
-    look_ = lookout_.Choose(hull, cameras, input.vehicle, input.pull_W, struck_);
+    if (needs || doubts_) {
+      look_ = lookout_.Choose(hull, cameras, input.vehicle, input.pull_W, struck_);
+    } else if (Stands() && lookout_.seen() > kOnwards) {  // no plan leads there
+      look_ = lookout_.Onwards(struck_);
+    } else {
+      return;
+    }
     if (look_ == nullptr) struck_.clear();  // all were tried: again
   }
 
@@ -187,18 +213,34 @@ class Scout::Impl {
   /// Around an obstacle that has no end one way is as good as any: after as long a way as that, over it. A straight way
   /// is none around.
   void NoteBest(const OccupancyMap& map) {
-    const Was& now = was_.back();
-    const bool straight = length_ < lookout_.Least(map, now.p_WB, now.goal_W) + kNearer;
     const bool nearer = length_ < best_ - kNearer;
     if (nearer) {
       best_ = length_;
       way_ = Way::kPlanned;
     }
-    if (nearer || straight) {
+    if (nearer || IsStraight(map)) {
       detour_ = 0.0;
       most_detour_ = kDetour;
       up_ = false;
     }
+  }
+
+  bool IsStraight(const OccupancyMap& map) const {
+    const Was& now = was_.back();
+    return length_ < lookout_.Least(map, now.p_WB, now.goal_W) + kNearer;
+  }
+
+  /// Above a wall the way is straight, above a roof it is not.
+  bool IsStraighterAbove(const FreeSpace& space) {
+    const OccupancyMap& map = *space.map;
+    const Was& now = was_.back();
+    const double side = map.resolution();
+    const double top = side * (map.origin().z() + map.size().z());
+    Eigen::Vector3d above = now.p_WB;
+    above.z() = std::max(above.z(), std::min(space.ceiling, top) - 0.5 * side);
+    const double here = length_ - lookout_.Least(map, now.p_WB, now.goal_W);
+    const double there = lookout_.Length(space, above, now.goal_W);
+    return there - lookout_.Least(map, above, now.goal_W) < here - kNearer;
   }
 
   /// As high as it can be seen to lead, and from there again.
@@ -244,7 +286,7 @@ class Scout::Impl {
 
   /// Until the cells were seen, or were looked for in vain, or the place is not reached.
   bool StillLooks(const ReplanInput& input, const OccupancyMap& map) {
-    const Was &then = was_.front(), &now = was_.back();
+    const Was& now = was_.back();
     const double left = (now.p_WB - look_->from.p_WB).norm();
     const bool passes = way_ == Way::kOut && look_->cells.empty();
     if (passes && left < std::min(kPassesBy, 0.5 * look_->way)) return false;
@@ -260,8 +302,18 @@ class Scout::Impl {
       images_there_ = now.images;
     }
     const bool in_vain = images_there_ && now.images >= *images_there_ + kLooks;
-    const bool stands =
-        !near && IsLongAgo(then, now, true) && (then.p_WB - now.p_WB).norm() < kNearer;
+    const bool in_part = aim_ + 1 < look_->way_W.size();
+    const bool still = now.t >= was_.front().t + kTries && input.vehicle.v_WB.norm() < kStill;
+    const bool stands = !near && (Stands() || (in_part && still));
+    if (stands && reached_ + 1 < aim_) {  // no plan leads there: a part of the way
+      AimAt((reached_ + aim_) / 2);
+      return true;
+    }
+    if (in_part && (now.p_WB - Aim().p_WB).norm() < kNear) {
+      reached_ = aim_;
+      AimAt(look_->way_W.size() - 1);
+      return true;
+    }
     if (!in_vain && !stands && now.t < until_) return true;
     if (way_ == Way::kUp && !near) EndClimb();
     if (passes) way_ = Way::kPlanned;
@@ -284,6 +336,7 @@ class Scout::Impl {
   bool doubts_ = false;              // of cells that are known to block
   bool up_ = false;                  // as high as it could climb, for that best
   const Look* look_ = nullptr;       // where it flies to; nullptr: to the goal
+  std::size_t aim_ = 0, reached_ = 0;  // of the places on the way there
   double until_ = 0.0;               // it is to be over [s]
   std::optional<int> images_there_;  // used before the first one from there
   std::vector<Viewpoint> struck_;    // looked from in vain
