@@ -110,7 +110,7 @@ Transition FromGoAround(const MissionState& s, const MissionInputs& in, const Co
   const double enough = p.follow_height - p.climb_tolerance;
   // The height above a lost pad means nothing: only the command says when the climb is done.
   const bool high = s.foot_height >= enough && (in.height >= enough || !now.pad_good);
-  const bool timeout = LastedLonger(s.mode_since, s.t, p.climb_timeout);
+  const bool timeout = in.rests || LastedLonger(s.mode_since, s.t, p.climb_timeout);
   if (!high && !timeout) return {s.mode, TransitionReason::kNone};
   if (!in.own_usable) return {MissionMode::kHold, TransitionReason::kOwnStateLost};
   if (!now.pad_good) return {MissionMode::kHold, TransitionReason::kPadLost};

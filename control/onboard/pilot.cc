@@ -139,6 +139,7 @@ void Pilot::StepMission(const OwnState& own, const estimation::PadFilter& filter
   inputs.foot_force = foot_force_ = foot_force;
   inputs.has_plan = has_plan_;
   inputs.at_goal = at_goal_;
+  inputs.rests = rests_;
   inputs.lands = lands_;
   // Between replans the last one counts: no plan has failed since it succeeded.
   if (requested_t_ && !last_planned_) {
@@ -223,6 +224,7 @@ const planning::ReplanResult* Pilot::Replan(const estimation::VehicleState& vehi
   const bool lands_as_wanted =
       to_contact && kept && lands_ && result.reason != planning::ReplanReason::kInvalidInput;
   at_goal_ = result.reason == planning::ReplanReason::kAtGoal;
+  rests_ = !wants_plan && result.status == planning::ReplanStatus::kHolding;
   out_of_reach_ = result.reason == planning::ReplanReason::kPadUnreachable;
   last_planned_ = result.status == planning::ReplanStatus::kPlanned || at_goal_ || lands_as_wanted;
   has_plan_ = last_planned_ || kept;

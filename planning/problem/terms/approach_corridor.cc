@@ -119,7 +119,7 @@ TermEntry ApproachCorridorTerm() {
                 "docs/formulation.md; descent: planned asks for it", true};
   entry.parameters = {HingeWidth(0.3, "m"),
                       {"radius", 0.3, 0.05, 10.0, "r0, of the cone at the deck [m]"},
-                      {"angle_deg", 45.0, 5.0, 85.0, "between the cone's side and its axis [deg]"},
+                      {"angle_deg", 60.0, 5.0, 85.0, "between the cone's side and its axis [deg]"},
                       {"span", 2.0, 0.1, 60.0, "acts this long before arrival [s]"}};
   entry.is_limit = true;
   entry.make = [info = entry.info](const TermSetup& setup) {

@@ -32,7 +32,7 @@
 //   landing        tracking        looks              the planner goes to look, and nothing flown lands
 //   landing        go_around       own_state_lost     own state not usable for over own_timeout
 //   go_around      tracking        climb_complete     at the follow height, pad converged
-//   go_around      tracking        climb_timeout      climbing took too long, pad converged
+//   go_around      tracking        climb_timeout      climbing took too long, or ends before, pad converged
 //   go_around      hold            pad_lost           climb over or too long, no converged pad
 //   go_around      hold            own_state_lost     climb over or too long, own state not usable
 //   go_around      hold            depth_lost         climb over or too long, no depth image
@@ -168,6 +168,7 @@ struct MissionInputs {
   bool lands =
       false;  ///< what is flown ends in contact, whatever the mode: nothing else was certified
   bool at_goal = false;  ///< the planner takes what was commanded as reached: no use to wait for it
+  bool rests = false;    ///< it was to rest, and does: a climb comes no higher
   double plan_failed_for = 0.0;  ///< time since planning last succeeded, 0 if it did [s]
   /// Until the committed plan touches the deck [s], negative when that is overdue; infinite where it
   /// does not lead there.
