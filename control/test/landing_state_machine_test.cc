@@ -213,6 +213,21 @@ TEST(LandingStateMachine, ClimbEndsByTimeout) {
   EXPECT_EQ(mission.RunUntil(MissionMode::kTracking), TransitionReason::kClimbTimeout);
 }
 
+// It stood for 5 s where a roof or unseen cells were above, while the pad drove away.
+TEST(LandingStateMachine, AClimbThatComesToRestIsOver) {
+  Mission mission;
+  mission.DescendTo(0.8);
+  mission.in.horizontal_distance = 1.1;
+  ASSERT_EQ(mission.RunUntil(MissionMode::kGoAround), TransitionReason::kErrorTooLarge);
+  mission.height_follows = false;
+  mission.in.height = 0.5;
+  mission.Run(1.0);
+  ASSERT_EQ(mission.outputs.mode, MissionMode::kGoAround);
+  mission.in.rests = true;
+  mission.Run(0.1);
+  EXPECT_EQ(mission.outputs.mode, MissionMode::kTracking);
+}
+
 TEST(LandingStateMachine, EmergencyStopsAndClears) {
   for (MissionMode mode : {MissionMode::kTracking, MissionMode::kLanding}) {
     Mission mission;

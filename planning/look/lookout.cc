@@ -16,6 +16,7 @@ namespace {
 constexpr int kMostSpans = 150000;      // that a search expands: more than a window mostly has
 constexpr double kBetweenBalls = 0.15;  // along the way [m]
 constexpr double kSoon = 1.5;           // cells so far along it are worth a third of the first [m]
+constexpr double kFar = 4.0 * kSoon;    // beyond what was seen: 2 % of the first [m]
 constexpr std::size_t kMostNeeded = 600;  // cells
 constexpr std::size_t kUsualPath = 2048, kUsualNeeded = 40000, kUsualNumbers = 200000,
                       kUsualCameras = 8;
@@ -175,6 +176,7 @@ bool Lookout::NoteNeeded(const HullSpace& hull, const Eigen::Vector3d& from) {
   seen_places_ = 0;
   Eigen::Vector3d before = from;
   for (const Eigen::Vector3d& place : path_) {
+    if (!needed_.empty() && along > seen_until_.way + kFar) break;
     const double length = (place - before).norm();
     const int steps = std::max(1, static_cast<int>(std::ceil(length / kBetweenBalls)));
     for (int i = 1; i <= steps; ++i) {

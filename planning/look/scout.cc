@@ -175,10 +175,12 @@ class Scout::Impl {
     no_way_.reset();
     if (!std::isfinite(length_)) return;
     if (lookout_.end() == SpanSearch::End::kAnywhere && !up_) return Climb(hull);
-    bool needs = lookout_.NoteNeeded(hull, now.p_WB);
-    const bool leaves = lookout_.end() != SpanSearch::End::kGoal;
-    const bool follows = way_ == Way::kOut;
-    if (leaves && (!needs || lookout_.seen() > kPassesBy)) way_ = Way::kOut;
+    bool needs = true;
+    const bool follows = way_ == Way::kOut, leaves = lookout_.end() != SpanSearch::End::kGoal;
+    if (!follows) {
+      needs = lookout_.NoteNeeded(hull, now.p_WB);
+      if (leaves && (!needs || lookout_.seen() > kPassesBy)) way_ = Way::kOut;
+    }
     if (way_ == Way::kOut) {
       length_ = lookout_.FarLength(space, now.p_WB, now.goal_W);
       if (follows && IsStraight(map)) {  // the planner needs no help
