@@ -158,7 +158,10 @@ class Scout::Impl {
                 &space);
     const HullSpace hull = HullFor(options_, space, input.margins.Sum(), DeckOf(input));
     lookout_.Keep(space);
-    if (way_ == Way::kUp) return Climb(hull);
+    if (way_ == Way::kUp) {
+      length_ = lookout_.Length(space, now.p_WB, now.goal_W);
+      return IsStraight(map) ? EndClimb() : Climb(hull);
+    }
     const bool progress = MadeProgress(space);
     NoteBest(map);
     if (detour_ > most_detour_) return IsStraighterAbove(space) ? Climb(hull) : EndClimb();
