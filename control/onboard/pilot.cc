@@ -23,6 +23,8 @@ namespace {
 
 constexpr double kLookAhead = 0.8;     // the heading is where the vehicle will be then [s]
 constexpr double kLookDistance = 0.3;  // nearer than this the way ahead says nothing [m]
+constexpr double kTurnsToLook =
+    2.0;  // before a place to look from; farther off it sees the way there [m]
 constexpr double kInSight =
     15.0 * estimation::kRadPerDeg;        // what is to be seen is no farther off the heading
 constexpr double kNearest = 0.1;          // of what is to be seen, from the vehicle's axis [m]
@@ -441,7 +443,8 @@ bool Pilot::plan_valid(double t) const {
 
 double Pilot::HeadingAhead(const estimation::VehicleState& vehicle,
                            const estimation::PadFilter& filter) const {
-  if (looks_from_) return looks_from_->yaw;
+  const bool looks = looks_from_ && (vehicle.p_WB - looks_from_->p_WB).norm() < kTurnsToLook;
+  if (looks) return looks_from_->yaw;
   // The path, not the reference: the reference of a pair soon turns into its stop.
   const Eigen::Vector3d ahead = WayAt(vehicle.t + kLookAhead) - WayAt(vehicle.t);
   if (ahead.head<2>().norm() > kLookDistance) {

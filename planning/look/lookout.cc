@@ -20,7 +20,7 @@ constexpr double kFar = 4.0 * kSoon;    // beyond what was seen: 2 % of the firs
 constexpr std::size_t kMostNeeded = 600;  // cells
 constexpr std::size_t kUsualPath = 2048, kUsualNeeded = 40000, kUsualNumbers = 200000,
                       kUsualCameras = 8;
-constexpr int kStrides[] = {8, 4, 2, 1};  // cells between places
+constexpr double kApartAt[] = {0.8, 0.4, 0.2, 0.1};  // places, the first that finds many [m]
 constexpr std::size_t kManyPlaces = 500, kMostPlaces = 1000, kMostTried = 500;
 constexpr std::size_t kSample = 200;  // needed cells, by which places are compared
 constexpr double kFlies = 1.0, kTurns = 1.2,
@@ -218,16 +218,17 @@ bool Lookout::NoteDoubted(const FreeSpace& space, const Eigen::Vector3d& goal) {
 /// is narrow.
 void Lookout::Flood(const HullSpace& hull, const Place& from) {
   const std::size_t before = places_.size();
-  for (const int stride : kStrides) {
+  for (const double apart : kApartAt) {
     places_.resize(before);
-    Flood(hull, from, stride);
+    Flood(hull, from, std::max(1L, std::lround(apart / hull.space->map->resolution())));
     if (places_.size() - before >= kManyPlaces) return;
   }
 }
 
-void Lookout::Flood(const HullSpace& hull, const Place& from, int stride) {
+void Lookout::Flood(const HullSpace& hull, const Place& from, long stride) {
   const OccupancyMap& map = *hull.space->map;
-  const double side = stride * map.resolution();
+  const double side = static_cast<double>(stride) * map.resolution();
+  const double covered = 2.0 * (hull.radius() + kSweepRoom);  // by the balls at both ends
   const std::size_t most = places_.size() + kMostPlaces;
   const auto place = [&](const CellIndex& node) -> Eigen::Vector3d {
     return from.p_W + side * node.cast<double>();
@@ -261,10 +262,11 @@ void Lookout::Flood(const HullSpace& hull, const Place& from, int stride) {
       if (!map.InWindow(cell)) continue;
       float& known = numbers_.At(cell);
       if (known == CellNumbers::kNone && !fits(there)) known = kClosed;
-      const float way = at.way + static_cast<float>(side * step.cast<double>().norm());
+      const double length = side * step.cast<double>().norm();
+      const float way = at.way + static_cast<float>(length);
       if (way >= known || hull.space->Blocked(between)) continue;
       // Beside the vehicle cells may be unseen that its camera passed.
-      if (at.node.isZero() && !fits(between)) continue;
+      if ((at.node.isZero() || length > covered) && !fits(between)) continue;
       known = way;
       queue_.push_back({way, at.node + step, index});
       std::push_heap(queue_.begin(), queue_.end(), farther);
@@ -291,8 +293,9 @@ const Look* Lookout::LookFrom(const Viewpoint& from, int place) {
   return &look_;
 }
 
-const Look* Lookout::Onwards(const std::vector<Viewpoint>& struck) {
-  const Viewpoint from = {seen_until_.p_W, std::atan2(along_.y(), along_.x())};
+const Look* Lookout::Onwards(double yaw, const std::vector<Viewpoint>& struck) {
+  const bool upright = along_.head<2>().norm() < 1e-6;
+  const Viewpoint from = {seen_until_.p_W, upright ? yaw : std::atan2(along_.y(), along_.x())};
   return IsStruck(from, struck) ? nullptr : LookFrom(from, -1);
 }
 

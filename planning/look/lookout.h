@@ -70,9 +70,9 @@ class Lookout {
                      const estimation::VehicleState& vehicle, const Eigen::Vector3d& pull_W,
                      const std::vector<Viewpoint>& struck);
 
-  /// The last place on the way to which cells lead that were seen free, turned along it. nullptr: it is struck. As
-  /// Choose. @pre NoteNeeded
-  const Look* Onwards(const std::vector<Viewpoint>& struck);
+  /// The last place on the way to which cells lead that were seen free, turned along it, or as now if that is
+  /// upright. nullptr: it is struck. As Choose. @pre NoteNeeded
+  const Look* Onwards(double yaw, const std::vector<Viewpoint>& struck);
 
   /// From here to the left. As Choose.
   const Look* Around(const Eigen::Vector3d& from, double yaw);
@@ -99,7 +99,7 @@ class Lookout {
   };
 
   void Flood(const HullSpace& hull, const Place& from);
-  void Flood(const HullSpace& hull, const Place& from, int stride);
+  void Flood(const HullSpace& hull, const Place& from, long stride);
   const Look* LookFrom(const Viewpoint& from, int place);
 
   void FindCandidates(const HullSpace& hull, const std::vector<LookCamera>& cameras,

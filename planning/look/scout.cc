@@ -133,6 +133,19 @@ class Scout::Impl {
     was_.erase(was_.begin(), was_.end() - 1);
     until_ = was_.back().t + look_->way / kSlowest + kLonger;
   }
+  /// No plan leads there: at half of the way that is left. False: that is here.
+  bool AimsNearer() {
+    const auto from_here = [&](std::size_t place) {
+      return (look_->way_W[place] - was_.back().p_WB).norm();
+    };
+    for (std::size_t place = reached_; place < aim_; ++place) {
+      if (from_here(place) < from_here(reached_)) reached_ = place;
+    }
+    const std::size_t half = (reached_ + aim_) / 2;
+    if (half == reached_ || from_here(half) < kNear) return false;
+    AimAt(half);
+    return true;
+  }
   Viewpoint Aim() const { return {look_->way_W[aim_], look_->from.yaw}; }
 
   /// Where the vehicle wants to be in the end: a descent that pauses wants to go on.
@@ -157,20 +170,25 @@ class Scout::Impl {
                 input.t_start + options_.min_duration, options_.pad_radius, options_.contact_height,
                 &space);
     const HullSpace hull = HullFor(options_, space, input.margins.Sum(), DeckOf(input));
+    const double yaw = estimation::Yaw(input.vehicle.q_WB);
     lookout_.Keep(space);
     if (way_ == Way::kUp) {
       length_ = lookout_.Length(space, now.p_WB, now.goal_W);
-      return IsStraight(map) ? EndClimb() : Climb(hull);
+      if (!IsStraight(map)) return Climb(hull);
+      way_ = Way::kPlanned;
     }
     const bool progress = MadeProgress(space);
     NoteBest(map);
-    if (detour_ > most_detour_) return IsStraighterAbove(space) ? Climb(hull) : EndClimb();
+    if (detour_ > most_detour_) {
+      if (IsStraighterAbove(space)) return Climb(hull);
+      return NextDetour();
+    }
     if (lookout_.end() == SpanSearch::End::kGoal) way_ = Way::kPlanned;
     if (progress && way_ == Way::kPlanned) return no_way_.reset();
     if (lookout_.Closed(space, now.p_WB, now.goal_W)) {
       NoteNoWay();
       if (turns_++ < kTurnsAround) {
-        look_ = lookout_.Around(now.p_WB, estimation::Yaw(input.vehicle.q_WB));
+        look_ = lookout_.Around(now.p_WB, yaw);
       }
       return;
     }
@@ -191,15 +209,15 @@ class Scout::Impl {
         return;
       }
       needs = lookout_.NoteNeeded(hull, now.p_WB);
-      if (lookout_.seen() > kOnwards) look_ = lookout_.Onwards(struck_);
+      if (lookout_.seen() > kOnwards) look_ = lookout_.Onwards(yaw, struck_);
     }
     if (look_ != nullptr) return;
     // All was seen, and something is where the goal is: it may be gone, or never was.
     doubts_ = !needs && lookout_.NoteDoubted(space, now.goal_W);
     if (needs || doubts_) {
       look_ = lookout_.Choose(hull, cameras, input.vehicle, input.pull_W, struck_);
-    } else if (Stands() && lookout_.seen() > kOnwards) {  // no plan leads there
-      look_ = lookout_.Onwards(struck_);
+    } else if (Stands() && lookout_.seen() > kAtGoal) {  // no plan leads there
+      look_ = lookout_.Onwards(yaw, struck_);
     } else {
       return;
     }
@@ -241,8 +259,9 @@ class Scout::Impl {
     const Was& now = was_.back();
     const double side = map.resolution();
     const double top = side * (map.origin().z() + map.size().z());
+    if (space.ceiling > top) return true;  // it is not known how high it may have to go
     Eigen::Vector3d above = now.p_WB;
-    above.z() = std::max(above.z(), std::min(space.ceiling, top) - 0.5 * side);
+    above.z() = std::max(above.z(), space.ceiling - 0.5 * side);
     const double here = length_ - lookout_.Least(map, now.p_WB, now.goal_W);
     const double there = lookout_.Length(space, above, now.goal_W);
     return there - lookout_.Least(map, above, now.goal_W) < here - kNearer;
@@ -262,6 +281,10 @@ class Scout::Impl {
   void EndClimb() {
     way_ = Way::kPlanned;
     up_ = true;
+    NextDetour();
+  }
+
+  void NextDetour() {
     detour_ = 0.0;
     most_detour_ *= 2.0;
   }
@@ -306,19 +329,18 @@ class Scout::Impl {
     if (near && std::abs(estimation::WrapAngle(turn)) < kTurnedTo && !images_there_) {
       images_there_ = now.images;
     }
-    const bool in_vain = images_there_ && now.images >= *images_there_ + kLooks;
+    const bool closed = SpaceFor(options_, map).Blocked(look_->from.p_WB);
+    const bool in_vain = closed || (images_there_ && now.images >= *images_there_ + kLooks);
     const bool in_part = aim_ + 1 < look_->way_W.size();
     const bool still = now.t >= was_.front().t + kTries && input.vehicle.v_WB.norm() < kStill;
     const bool stands = !near && (Stands() || (in_part && still));
-    if (stands && reached_ + 1 < aim_) {  // no plan leads there: a part of the way
-      AimAt((reached_ + aim_) / 2);
-      return true;
-    }
     if (in_part && (now.p_WB - Aim().p_WB).norm() < kNear) {
+      if (look_->cells.empty()) return false;  // the planner may come on from here
       reached_ = aim_;
       AimAt(look_->way_W.size() - 1);
       return true;
     }
+    if (stands && AimsNearer()) return true;
     if (!in_vain && !stands && now.t < until_) return true;
     if (way_ == Way::kUp && !near) EndClimb();
     if (passes) way_ = Way::kPlanned;

@@ -271,19 +271,12 @@ void OccupancyMap::ApplyReturn(std::uint8_t vote, const CellIndex& cell,
   value.log_odds = after_hit_[static_cast<std::uint8_t>(value.log_odds)];
   Set(cell, value);
   if (!value.doubtful) return;
-  if (doubts_.size() == kMostDoubts) ForgetOldDoubts();
+  // A pad that is not known for long is no reason to call its sides obstacles. Their cells stay in doubt.
+  if (doubts_.size() == kMostDoubts)
+    doubts_.erase(doubts_.begin(), doubts_.begin() + kMostDoubts / 2);
   // The cell's centre will represent the return, which was anywhere in it.
   const double offset = 0.5 * options_.resolution;
   doubts_.push_back({t, cell, ToleranceAt((CentreOf(cell) - p_WC).norm()) + offset});
-}
-
-/// A pad that is not known for long was no reason to call its sides obstacles. Nothing is known of their cells again.
-void OccupancyMap::ForgetOldDoubts() {
-  const auto end = doubts_.begin() + kMostDoubts / 2;
-  for (auto doubt = doubts_.begin(); doubt != end; ++doubt) {
-    if (IsDoubtful(doubt->cell)) MakeCertain(doubt->cell, true);
-  }
-  doubts_.erase(doubts_.begin(), end);
 }
 
 void OccupancyMap::MakeCertain(const CellIndex& cell, bool explained) {

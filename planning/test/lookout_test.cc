@@ -144,10 +144,10 @@ TEST_F(Survey, TheFarPotentialKnowsWhatIsOutOfTheWindow) {
   map_.MarkRestFree();
   lookout_.NoteNeeded(Hull(), here);
   EXPECT_GT(lookout_.seen(), 8.0 + 12.0) << "out and around, all that is in the window";
-  const Look* onwards = lookout_.Onwards({});
+  const Look* onwards = lookout_.Onwards(0.0, {});
   ASSERT_TRUE(onwards);
   EXPECT_GT(std::abs(onwards->from.p_WB.y()), 4.0);
-  EXPECT_FALSE(lookout_.Onwards({onwards->from})) << "it is struck";
+  EXPECT_FALSE(lookout_.Onwards(0.0, {onwards->from})) << "it is struck";
 }
 
 TEST_F(Survey, WhatWasSeenIsNotNeeded) {

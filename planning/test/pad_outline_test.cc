@@ -131,8 +131,9 @@ TEST(PadOutline, ReturnsThatAreInDoubtForLongAreNoObstacles) {
   PadOutline doubt = Deck(0.4);
   doubt.p_WP = {0.0, 0.0, 0.45};
   const Eigen::Vector3d side(0.05, 0.05, 0.45);
-  for (int i = 0; i < 17000; ++i) map.Integrate(DownAt(side, 0.45, 0.1 * i), doubt);
+  for (int i = 0; i < 16385; ++i) map.Integrate(DownAt(side, 0.45, 0.1 * i), doubt);
   EXPECT_FALSE(map.IsOccupied(map.CellOf(side)));
+  EXPECT_TRUE(map.IsDoubtful(map.CellOf(side)));
   EXPECT_FALSE(map.IsObservedFree(map.CellOf(side)));
   PadOutline known = doubt;
   known.sigma = 0.01;

@@ -217,7 +217,7 @@ TEST(ReplannerFallback, ComesToRestOnRequestAndStays) {
       const ReplanStatus status = replanner.Rest(input, climb, map).status;
       if (step == 0) {
         height = at.p_WB.z();
-        EXPECT_EQ(status, climb > 0.0 ? ReplanStatus::kClimbing : ReplanStatus::kBraking);
+        EXPECT_EQ(status, climb > 0.0 ? ReplanStatus::kClimbing : ReplanStatus::kHolding);
       } else {
         EXPECT_TRUE(status == ReplanStatus::kKept || status == ReplanStatus::kHolding);
       }
@@ -227,16 +227,35 @@ TEST(ReplannerFallback, ComesToRestOnRequestAndStays) {
   }
 }
 
-// Before, a vehicle that could not climb in full stayed low in the pad's way.
-TEST(ReplannerFallback, BelowARoofAPartOfTheClimbIsFlownOnce) {
+OccupancyMap BelowARoof(const Eigen::Vector3d& start, double roof) {
   OccupancyMap map = ObservedMap();
-  const Eigen::Vector3d start(-6.0, 0.0, 1.5);
-  const CellIndex above = map.CellOf(start + Eigen::Vector3d(0.0, 0.0, 1.5));
+  const CellIndex above = map.CellOf(start + Eigen::Vector3d(0.0, 0.0, roof));
   for (int x = -8; x <= 8; ++x) {
     for (int y = -8; y <= 8; ++y) {
       map.SetState(above + CellIndex(x, y, 0), CellState::kOccupied);
     }
   }
+  return map;
+}
+
+// The mission takes it for the end of a go-around.
+TEST(ReplannerFallback, WhoCannotClimbAtAllHolds) {
+  const Eigen::Vector3d start(-6.0, 0.0, 1.5);
+  const OccupancyMap map = BelowARoof(start, 0.7);
+  Replanner replanner(Options(ArrivalMode::kFixed), solvers::StandardBackends());
+  replanner.CommitHover(start, 0.0);
+  ReplanInput input = Input(start, ArcPad({6.0, 0.0, 0.3}, 0.0, 0.0, 0.0), 0.0);
+  input.pad = nullptr;
+  for (int step = 0; step < 10; ++step) {
+    input.t_now = input.t_start = input.vehicle.t = 0.1 * step;
+    EXPECT_EQ(replanner.Rest(input, 1.5, map).status, ReplanStatus::kHolding);
+  }
+}
+
+// Before, a vehicle that could not climb in full stayed low in the pad's way.
+TEST(ReplannerFallback, BelowARoofAPartOfTheClimbIsFlownOnce) {
+  const Eigen::Vector3d start(-6.0, 0.0, 1.5);
+  const OccupancyMap map = BelowARoof(start, 1.5);
   Replanner replanner(Options(ArrivalMode::kFixed), solvers::StandardBackends());
   replanner.CommitHover(start, 0.0);
   ReplanInput input = Input(start, ArcPad({6.0, 0.0, 0.3}, 0.0, 0.0, 0.0), 0.0);

@@ -125,9 +125,24 @@ TEST_F(Scouted, FromRestItGoesInParts) {
     before = (look_->p_WB - p_).norm();
   }
   GoThere();
-  look_ = Step();
+  EXPECT_FALSE(Step()) << "the planner may come on from here";
+}
+
+// The last metre counts, too.
+TEST_F(Scouted, FromRestItGoesOnBesideTheGoal) {
+  map_.MarkRestFree();
+  p_ = pad_->At(0.0).p_WP - Eigen::Vector3d(0.6, 0.0, 0.0);
+  EXPECT_LT(FirstLook(), 3.0);
+}
+
+// The way there is upright: no reason to turn.
+TEST_F(Scouted, KeepsItsHeadingOnTheWayUp) {
+  map_.MarkRestFree();
+  pad_ = std::make_unique<GoalAt>(p_ + Eigen::Vector3d(0.0, 0.0, 2.0));
+  yaw_ = 2.5;
+  FirstLook();
   ASSERT_TRUE(look_);
-  EXPECT_LT((look_->p_WB - goal).norm(), 0.2) << "and on from there";
+  EXPECT_NEAR(look_->yaw, 2.5, 1e-9);
 }
 
 TEST_F(Scouted, NotAtTheGoal) {
@@ -320,22 +335,21 @@ TEST_F(Scouted, LooksAtWhatBlocksTheGoal) {
   EXPECT_FALSE(Step()) << "it was seen free";
 }
 
-// The place on the way is not reached: it tries parts of the way, and looks from elsewhere.
+// A place on the way is not reached: it tries parts of the way, gives it up, and asks again later.
 TEST_F(Scouted, AWayOutThatFailsIsStruckOff) {
   map_.MarkRestFree();
   WallAcross(&map_, 3.05);
-  Eigen::Vector3d place = p_;
-  double since = t_;
-  int places = 0;
-  for (int i = 0; i < 1200; ++i) {
+  double since = t_, longest = 0.0;
+  int looks = 0;
+  for (int i = 0; i < 600; ++i) {
+    const bool looked = look_.has_value();
     look_ = Step();
-    const bool is_new = look_ && place != look_->p_WB;
-    if (is_new) ++places;
-    if (is_new || !look_) since = t_;
-    if (look_) place = look_->p_WB;
-    EXPECT_LT(t_ - since, 3.0);
+    if (look_ && !looked) ++looks;
+    if (!look_) since = t_;
+    longest = std::max(longest, t_ - since);
   }
-  EXPECT_GT(places, 3);
+  EXPECT_GT(looks, 2);
+  EXPECT_LT(longest, 8.0);
 }
 
 // A pen that drives: it may come out. Asked at once after a look, too.

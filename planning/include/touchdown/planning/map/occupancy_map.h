@@ -258,7 +258,6 @@ class OccupancyMap {
   void ApplyReturn(std::uint8_t vote, const CellIndex& cell, const Eigen::Vector3d& p_WC, double t);
   void ApplyMisses(const Eigen::Vector3d& p_WC);
   void ApplyMissToHit(const CellIndex& cell, const Eigen::Vector3d& p_WC);
-  void ForgetOldDoubts();
   void MakeCertain(const CellIndex& cell, bool explained);
   void Forget(const CellIndex& cell, const CellBox& stays, CellBlocks* memory);
   void Set(const CellIndex& cell, Cell value);
