@@ -22,7 +22,7 @@ std::string CommittedBefore(const RecordPlan& asked, double t_start) {
     return fmt::format("  committed  a stored stop, until t = {:.3f} s\n", pair.stop.t_end());
   }
   std::string text = fmt::format("  committed  {} of {:.2f} s, until t = {:.3f} s",
-                                 asked.before.planned ? "a plan to the pad" : "a curve to rest",
+                                 asked.before.planned ? "a plan" : "a curve to rest",
                                  pair.curve.duration(), pair.curve.t_end());
   if (pair.t_stop < pair.curve.t_end()) {
     text += fmt::format("; its stop begins at t = {:.3f} s", pair.t_stop);

@@ -84,7 +84,7 @@ TEST_F(Replayed, TheFirstCaseBitForBit) {
 
 // Over a pad that stands: while it goes to look.
 TEST_F(Replayed, WhereItLooksFromToo) {
-  Fly("open", {"pad.motion=static", "pad.start=[0, 0]", "start.position=[0, 0, 3]", "timeout=15",
+  Fly("open", {"pad.motion=static", "pad.start=[0, 0]", "start.position=[0, 0, 2]", "timeout=15",
                "seed=4"});
   const RecordedFlight flight = ReadRecord(path_, {}, registries_);
   int looks = 0;

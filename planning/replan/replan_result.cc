@@ -60,7 +60,7 @@ const char* ToString(ReplanReason reason) {
 const char* Explain(ReplanStatus status) {
   switch (status) {
     case ReplanStatus::kPlanned:
-      return "A new plan to the pad is flown.";
+      return "A new plan is flown.";
     case ReplanStatus::kKept:
       return "The committed curve is still safe and goes on.";
     case ReplanStatus::kBraking:

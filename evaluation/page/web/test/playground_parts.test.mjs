@@ -311,7 +311,7 @@ const certificate = {
 };
 
 test("what came out is told in words", () => {
-  const answer = { status: "planned", reason: "none", sentences: ["A new plan to the pad is flown."], passed: true, pair: { curve: line(3, 6), t_stop: 3.4, stop: line(3.4, 1) } };
+  const answer = { status: "planned", reason: "none", sentences: ["A new plan is flown."], passed: true, pair: { curve: line(3, 6), t_stop: 3.4, stop: line(3.4, 1) } };
   near(lengthOf(curveOf(answer.pair.curve)), 6, 1e-6);
   assert.deepEqual(headlineOf(answer), { tone: "good", title: "Planned: contact in 2.00 s.", text: "If no newer plan comes, the vehicle stops from 0.40 s on. That stop is certified, too." });
   assert.match(headlineOf({ ...answer, pair: { ...answer.pair, t_stop: null, stop: null } }).text, /needs no stop/);
