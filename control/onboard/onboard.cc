@@ -142,6 +142,7 @@ struct Onboard::Parts {
     status.pad_sure = options.to_goal || senses.pad().Converged(t);
     status.plan_valid = pilot->plan_valid(t);
     status.no_way = pilot->no_way();
+    status.look = pilot->look_words();
   }
 
   OnboardOptions options;

@@ -324,6 +324,10 @@ std::optional<planning::NoWay> Pilot::no_way() const {
   return parts_.scout->no_way();
 }
 
+std::string_view Pilot::look_words() const {
+  return parts_.scout ? parts_.scout->look_words() : std::string_view();
+}
+
 PilotCommand Pilot::Control(const OwnState& own) {
   const double t = own.now().t;
   PilotCommand command = Level(t);

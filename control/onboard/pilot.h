@@ -5,6 +5,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <string_view>
 
 #include "control/onboard/own_state.h"
 #include "control/tracking/disturbance_observer.h"
@@ -80,6 +81,7 @@ class Pilot {
   const MissionOutputs& mission() const { return mission_; }
   const OnboardReplan& last_replan() const { return replan_; }
   std::optional<planning::NoWay> no_way() const;
+  std::string_view look_words() const;
   /// What the landing planner remembers before its next step; empty with any other. Allocates.
   planning::ReplannerState replanner_state() const;
   bool plan_valid(double t) const;

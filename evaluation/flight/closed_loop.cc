@@ -198,6 +198,10 @@ class Trial {
       descent_hold_ = mission.descent_hold;
       Note(t, "descent", std::string(control::ToString(descent_hold_)));
     }
+    if (status.look != look_) {
+      look_ = status.look;
+      Note(t, "look", std::string(look_));
+    }
   }
 
   /// Where the widest way is narrowest is asked once, when the answer comes.
@@ -476,6 +480,7 @@ class Trial {
   Metrics metrics_;
   estimation::OwnStatus own_status_ = estimation::OwnStatus::kGood;
   control::DescentHold descent_hold_ = control::DescentHold::kNone;
+  std::string_view look_;
   std::string mode_ = "hovering";  // of the mission, and why
   control::Gate gate_ = control::Gate::kNoPad;
   SlidingMean through_air_;

@@ -49,6 +49,7 @@ class Scout::Impl {
   void Prepare(const OccupancyMap& map) { lookout_.Prepare(SpaceFor(options_, map)); }
 
   const std::optional<NoWay>& no_way() const { return no_way_; }
+  std::string_view look_words() const { return words_; }
 
   std::optional<Viewpoint> Step(const ReplanInput& input, const std::vector<LookCamera>& cameras,
                                 const OccupancyMap& map, bool may_look) {
@@ -64,6 +65,7 @@ class Scout::Impl {
       detour_ = 0.0;
       no_way_.reset();
     }
+    if (look_ && !may_look) Ends("ends: what is flown now comes first");
     if (look_ && !(may_look && StillLooks(input, map))) {
       Forget();
       was_.push_back(now);
@@ -75,6 +77,7 @@ class Scout::Impl {
     Search(input, cameras, map);
     if (look_ == nullptr) return std::nullopt;
     ++looks_;
+    words_ = reason_;
     images_there_.reset();
     reached_ = 0;
     AimAt(look_->way_W.size() - 1);
@@ -189,6 +192,7 @@ class Scout::Impl {
       NoteNoWay();
       if (turns_++ < kTurnsAround) {
         look_ = lookout_.Around(now.p_WB, yaw);
+        reason_ = "begins: around, since no way is known";
       }
       return;
     }
@@ -210,14 +214,18 @@ class Scout::Impl {
       }
       needs = lookout_.NoteNeeded(hull, now.p_WB);
       if (lookout_.seen() > kOnwards) look_ = lookout_.Onwards(yaw, struck_);
+      reason_ = "begins: along the way that leaves the map's window";
     }
     if (look_ != nullptr) return;
     // All was seen, and something is where the goal is: it may be gone, or never was.
     doubts_ = !needs && lookout_.NoteDoubted(space, now.goal_W);
     if (needs || doubts_) {
       look_ = lookout_.Choose(hull, cameras, input.vehicle, input.pull_W, struck_);
+      reason_ = needs ? "begins: no progress, and cells on the way were never seen"
+                      : "begins: no progress, and something is where the goal is";
     } else if (Stands() && lookout_.seen() > kAtGoal) {  // no plan leads there
       look_ = lookout_.Onwards(yaw, struck_);
+      reason_ = "begins: all was seen, but no plan leads there";
     } else {
       return;
     }
@@ -271,6 +279,7 @@ class Scout::Impl {
   void Climb(const HullSpace& hull) {
     const Was& now = was_.back();
     way_ = Way::kUp;
+    reason_ = "begins: over what is in the way";
     look_ = lookout_.Highest(hull, now.p_WB, now.goal_W);
     if (look_ != nullptr && look_->from.p_WB.z() > now.p_WB.z() + kHigher) return;
     look_ = nullptr;
@@ -317,13 +326,13 @@ class Scout::Impl {
     const Was& now = was_.back();
     const double left = (now.p_WB - look_->from.p_WB).norm();
     const bool passes = way_ == Way::kOut && look_->cells.empty();
-    if (passes && left < std::min(kPassesBy, 0.5 * look_->way)) return false;
+    if (passes && left < std::min(kPassesBy, 0.5 * look_->way)) return Ends("ends: passed");
     const auto unseen =
         std::count_if(look_->cells.begin(), look_->cells.end(), [&](const auto& cell) {
           return !map.IsObservedFree(cell) && (doubts_ || !map.IsOccupied(cell));
         });
     const auto cells = static_cast<double>(look_->cells.size());
-    if (cells > 0.0 && static_cast<double>(unseen) <= kEnough * cells) return false;
+    if (cells > 0.0 && static_cast<double>(unseen) <= kEnough * cells) return Ends("ends: seen");
     const double turn = estimation::Yaw(input.vehicle.q_WB) - look_->from.yaw;
     const bool near = left < kNear;
     if (near && std::abs(estimation::WrapAngle(turn)) < kTurnedTo && !images_there_) {
@@ -335,7 +344,7 @@ class Scout::Impl {
     const bool still = now.t >= was_.front().t + kTries && input.vehicle.v_WB.norm() < kStill;
     const bool stands = !near && (Stands() || (in_part && still));
     if (in_part && (now.p_WB - Aim().p_WB).norm() < kNear) {
-      if (look_->cells.empty()) return false;  // the planner may come on from here
+      if (look_->cells.empty()) return Ends("ends: a part of the way was flown");
       reached_ = aim_;
       AimAt(look_->way_W.size() - 1);
       return true;
@@ -346,6 +355,13 @@ class Scout::Impl {
     if (passes) way_ = Way::kPlanned;
     if (struck_.size() == kUsualStruck) struck_.erase(struck_.begin());
     struck_.push_back(look_->from);
+    return Ends(closed    ? "ends: something is there"
+                : in_vain ? "ends: nothing more came in sight"
+                          : "ends: not reached");
+  }
+
+  bool Ends(std::string_view words) {
+    words_ = words;
     return false;
   }
 
@@ -369,12 +385,15 @@ class Scout::Impl {
   std::vector<Viewpoint> struck_;    // looked from in vain
   int looks_ = 0;                    // so far
   std::optional<NoWay> no_way_;
+  std::string_view reason_, words_;  // for a look; how the last one began or ended
 };
 
 Scout::Scout(const ReplannerOptions& options) : impl_(std::make_unique<Impl>(options)) {}
 Scout::~Scout() = default;
 
 const std::optional<NoWay>& Scout::no_way() const { return impl_->no_way(); }
+
+std::string_view Scout::look_words() const { return impl_->look_words(); }
 
 void Scout::Prepare(const OccupancyMap& map) { impl_->Prepare(map); }
 

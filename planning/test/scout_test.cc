@@ -323,6 +323,16 @@ TEST_F(Scouted, WhatThePlannerRefusesIsPassedBy) {
   }
 }
 
+TEST_F(Scouted, SaysWhyALookBeginsAndEnds) {
+  EXPECT_EQ(scout_.look_words(), "");
+  FirstLook();
+  ASSERT_TRUE(look_);
+  EXPECT_EQ(scout_.look_words(), "begins: no progress, and cells on the way were never seen");
+  map_.MarkRestFree();
+  EXPECT_FALSE(Step());
+  EXPECT_EQ(scout_.look_words(), "ends: seen");
+}
+
 // What blocks the goal's place may never have been there.
 TEST_F(Scouted, LooksAtWhatBlocksTheGoal) {
   map_.MarkRestFree();

@@ -5,6 +5,7 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
@@ -51,6 +52,7 @@ struct OnboardStatus {
   bool pad_sure = false;    ///< ... well enough to land by
   bool plan_valid = false;  ///< what is flown is no older than the mission allows
   std::optional<planning::NoWay> no_way;  ///< the scout knows no way to a target that stands
+  std::string_view look;  ///< why the last look began, or how it ended; empty: there was none
 };
 
 /// What was asked of the planner in the last Step; nullptr: nothing.

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
@@ -49,6 +50,9 @@ class Scout {
   /// What the map knows to block encloses the vehicle, or the goal of the last Step, which stands. What is seen later
   /// may open a way. Empty: there may be one.
   const std::optional<NoWay>& no_way() const;
+
+  /// Why the last look began, or how it ended: "begins: ...", "ends: ...". Empty: there was none.
+  std::string_view look_words() const;
 
  private:
   class Impl;
