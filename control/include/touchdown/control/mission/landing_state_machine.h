@@ -220,7 +220,7 @@ struct MissionParameters {
   double closing_rate = 4.0;   ///< ... or than can be taken off until it is due [m/s^2]
   double lean_max =
       1.5;  ///< leaning farther a vehicle waits for a lull before it descends to contact [rad]
-  double cone_slope = 1.8;  ///< horizontal errors allowed grow by so much per metre of height [-]
+  double cone_slope = 1.2;  ///< horizontal errors allowed grow by so much per metre of height [-]
 
   double height_lag = 0.15;       ///< the command waits for a vehicle higher than this above it [m]
   double press_depth = 0.3;       ///< the command goes this far below the deck until contact [m]
