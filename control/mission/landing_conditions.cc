@@ -10,6 +10,8 @@
 namespace touchdown::control {
 namespace {
 
+constexpr double kPlanSlope = 1.8;  // of the approach cone of plans, 60 degrees, for the feet [-]
+
 constexpr double kHeightError =
     0.02;  // one sigma of an estimated own height (docs/results/own_state/tables.md) [m]
 
@@ -58,6 +60,9 @@ Conditions Assess(const MissionState& s, const MissionInputs& in,
   now.in_cone =
       now.numbers_valid &&
       in.horizontal_distance <= p.landing_distance + p.cone_slope * std::max(0.0, in.height);
+  now.comes_in =
+      now.numbers_valid &&
+      in.horizontal_distance <= p.landing_distance + kPlanSlope * std::max(0.0, in.height);
   now.touching = now.numbers_valid && in.foot_force >= p.contact_force &&
                  std::abs(in.height) <= p.contact_height &&
                  in.horizontal_distance <= p.contact_distance;

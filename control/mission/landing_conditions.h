@@ -21,6 +21,7 @@ struct Conditions {
   bool may_land;   ///< ... and in the wind felt now the feet would touch first
   bool in_corridor;
   bool in_cone;   ///< of a planned landing: wider, and it opens upwards
+  bool comes_in;  ///< the last seconds of plans lead through here: wider again
   bool touching;  ///< the deck, with some force
   bool
       will_touch;  ///< a foot is so low over a deck that is surely there that a climb comes too late

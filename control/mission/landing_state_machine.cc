@@ -133,7 +133,7 @@ void DecideToWait(const MissionInputs& in, const MissionParameters& p, const Con
     return;
   }
   const bool due = in.arrival_in <= p.decide_time;
-  const bool low = in.height < p.gate_height + HeightLost(in, p, p.turn_time) && now.in_cone;
+  const bool low = in.height < p.gate_height + HeightLost(in, p, p.turn_time) && now.comes_in;
   s.waits_above = !now.may_land && (s.waits_above || due || low);
 }
 

