@@ -57,12 +57,12 @@ Conditions Assess(const MissionState& s, const MissionInputs& in,
   now.in_corridor =
       now.numbers_valid &&
       in.horizontal_distance <= p.corridor_radius + p.corridor_slope * std::max(0.0, in.height);
-  now.in_cone =
-      now.numbers_valid &&
-      in.horizontal_distance <= p.landing_distance + p.cone_slope * std::max(0.0, in.height);
-  now.comes_in =
-      now.numbers_valid &&
-      in.horizontal_distance <= p.landing_distance + kPlanSlope * std::max(0.0, in.height);
+  const auto in_cone_of = [&](double slope) {
+    return now.numbers_valid &&
+           in.horizontal_distance <= p.landing_distance + slope * std::max(0.0, in.height);
+  };
+  now.in_cone = in_cone_of(p.cone_slope);
+  now.comes_in = in_cone_of(kPlanSlope);
   now.touching = now.numbers_valid && in.foot_force >= p.contact_force &&
                  std::abs(in.height) <= p.contact_height &&
                  in.horizontal_distance <= p.contact_distance;

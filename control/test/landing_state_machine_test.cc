@@ -203,24 +203,25 @@ TEST(LandingStateMachine, LandingGivesUpWithoutPadOrPlan) {
   EXPECT_EQ(other.outputs.guidance, Guidance::kClimb);
 }
 
-TEST(LandingStateMachine, ClimbEndsByTimeout) {
-  Mission mission;
+/// Something keeps it down.
+void GoAroundBelow(Mission& mission) {
   mission.DescendTo(0.8);
   mission.in.horizontal_distance = 1.1;
   ASSERT_EQ(mission.RunUntil(MissionMode::kGoAround), TransitionReason::kErrorTooLarge);
   mission.height_follows = false;
-  mission.in.height = 0.5;  // something keeps it down
+  mission.in.height = 0.5;
+}
+
+TEST(LandingStateMachine, ClimbEndsByTimeout) {
+  Mission mission;
+  GoAroundBelow(mission);
   EXPECT_EQ(mission.RunUntil(MissionMode::kTracking), TransitionReason::kClimbTimeout);
 }
 
 // It stood for 5 s where a roof or unseen cells were above, while the pad drove away.
 TEST(LandingStateMachine, AClimbThatComesToRestIsOver) {
   Mission mission;
-  mission.DescendTo(0.8);
-  mission.in.horizontal_distance = 1.1;
-  ASSERT_EQ(mission.RunUntil(MissionMode::kGoAround), TransitionReason::kErrorTooLarge);
-  mission.height_follows = false;
-  mission.in.height = 0.5;
+  GoAroundBelow(mission);
   mission.Run(1.0);
   ASSERT_EQ(mission.outputs.mode, MissionMode::kGoAround);
   mission.in.rests = true;

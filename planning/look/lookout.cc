@@ -75,7 +75,7 @@ Lookout::Lookout(double vertical_cost)
   queue_.reserve(27 * kMostPlaces);
   sights_.reserve(kUsualCameras);
   look_.cells.reserve(kMostNeeded + 1);
-  look_.way_W.reserve(kUsualPath);
+  look_.way_W.reserve(kUsualPath + kMostPlaces);
   seen_.reserve(kMostNeeded + 1);
 }
 
@@ -159,6 +159,11 @@ double Lookout::Least(const OccupancyMap& map, const Eigen::Vector3d& from,
          (longer + (std::numbers::sqrt2 - 1.0) * shorter + vertical_cost_ * way.z());
 }
 
+void Lookout::BeginAt(const Eigen::Vector3d& from) {
+  begin_ = seen_until_ = {from, 0.0};
+  seen_places_ = 0;
+}
+
 bool Lookout::NoteNeeded(const HullSpace& hull, const Eigen::Vector3d& from) {
   const OccupancyMap& map = *hull.space->map;
   needed_.clear();
@@ -172,8 +177,7 @@ bool Lookout::NoteNeeded(const HullSpace& hull, const Eigen::Vector3d& from) {
     return true;
   };
   ForEachUnseen(hull, from, note);
-  begin_ = seen_until_ = {from, 0.0};
-  seen_places_ = 0;
+  BeginAt(from);
   Eigen::Vector3d before = from;
   for (const Eigen::Vector3d& place : path_) {
     if (!needed_.empty() && along > seen_until_.way + kFar) break;
@@ -276,7 +280,7 @@ void Lookout::Flood(const HullSpace& hull, const Place& from, long stride) {
 
 /// @param place  of those of the flood; -1: where the seen part of the way ends.
 const Look* Lookout::LookFrom(const Viewpoint& from, int place) {
-  const auto at = [&](int i) { return places_[static_cast<std::size_t>(i)]; };
+  const auto at = [&](int i) -> const Place& { return places_[static_cast<std::size_t>(i)]; };
   look_.from = from;
   look_.way = place < 0 ? seen_until_.way : at(place).way;
   look_.cells.clear();
@@ -300,15 +304,13 @@ const Look* Lookout::Onwards(double yaw, const std::vector<Viewpoint>& struck) {
 }
 
 const Look* Lookout::Around(const Eigen::Vector3d& from, double yaw) {
-  begin_ = seen_until_ = {from, 0.0};
-  seen_places_ = 0;
+  BeginAt(from);
   return LookFrom({from, yaw + 0.5 * std::numbers::pi}, -1);
 }
 
 const Look* Lookout::Highest(const HullSpace& hull, const Eigen::Vector3d& from,
                              const Eigen::Vector3d& goal) {
-  begin_ = seen_until_ = {from, 0.0};
-  seen_places_ = 0;
+  BeginAt(from);
   places_.clear();
   Flood(hull, begin_);
   if (places_.empty()) return nullptr;

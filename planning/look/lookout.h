@@ -100,6 +100,7 @@ class Lookout {
 
   void Flood(const HullSpace& hull, const Place& from);
   void Flood(const HullSpace& hull, const Place& from, long stride);
+  void BeginAt(const Eigen::Vector3d& from);
   const Look* LookFrom(const Viewpoint& from, int place);
 
   void FindCandidates(const HullSpace& hull, const std::vector<LookCamera>& cameras,

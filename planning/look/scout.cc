@@ -65,8 +65,8 @@ class Scout::Impl {
       detour_ = 0.0;
       no_way_.reset();
     }
-    if (look_ && !may_look) Ends("ends: what is flown now comes first");
-    if (look_ && !(may_look && StillLooks(input, map))) {
+    if (look_ &&
+        !(may_look ? StillLooks(input, map) : Ends("ends: what is flown now comes first"))) {
       Forget();
       was_.push_back(now);
     }
