@@ -62,7 +62,7 @@ double LowestPlan(const estimation::VehicleModel& model) {
 }
 
 double LeastClearance(const estimation::VehicleModel& model) {
-  const planning::Margins calm = planning::MarginsOf(0.0, 0.0, 0.0, Eigen::Vector3d::Zero());
+  const planning::Margins calm = planning::MarginsOf(0.0, 0.0, 0.0, 0.0);
   return HullAtEveryTilt(model) + calm.Sum() + planning::kSweepRoom;
 }
 

@@ -195,9 +195,13 @@ const planning::ReplanResult* Pilot::Replan(const estimation::VehicleState& vehi
   input.t_now = vehicle.t;
   input.t_start = vehicle.t + replan_.latency_s;
   input.vehicle = vehicle;
-  if (observer_) input.pull_W = observer_->steady_force_W() / model_.mass_kg;
-  input.margins = planning::MarginsOf(own_position_sigma_, own_attitude_sigma_,
-                                      recent_error_.value(), input.pull_W);
+  double gust = 0.0;
+  if (observer_) {
+    input.pull_W = observer_->steady_force_W() / model_.mass_kg;
+    gust = observer_->gust_force() / model_.mass_kg;
+  }
+  input.margins =
+      planning::MarginsOf(own_position_sigma_, own_attitude_sigma_, recent_error_.value(), gust);
   if (!arriving()) {
     touchdown_rate_ = TouchdownRate(input.pull_W);
     level_time_ = LevelTime(input.pull_W);

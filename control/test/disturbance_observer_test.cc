@@ -207,6 +207,23 @@ TEST(DisturbanceObserver, SteadyForceIsTheSlowPart) {
   EXPECT_NEAR(observer.steady_force_W().x(), 2.0, 0.15);
 }
 
+TEST(DisturbanceObserver, AGustIsRememberedThroughALullAndSteadyWindIsNone) {
+  DisturbanceObserver observer(Vehicle());
+  Body body(Vehicle());
+  const auto push = [](double x) {
+    return [x](double) { return Disturbance{{x, 0.0, 0.0}, Eigen::Vector3d::Zero()}; };
+  };
+  Fly(&observer, &body, 20.0, push(2.0));
+  const double steady = observer.gust_force();
+  EXPECT_LT(steady, 0.5);  // what is left of its onset
+  Fly(&observer, &body, 1.0, push(8.0));
+  Fly(&observer, &body, 1.0, push(2.0));
+  const double after = observer.gust_force();
+  EXPECT_GT(after, 2.0 * steady);
+  Fly(&observer, &body, 10.0, push(2.0));
+  EXPECT_GT(observer.gust_force(), 0.7 * after);
+}
+
 TEST(DisturbanceObserver, FeetInContactTeachNothing) {
   DisturbanceObserver observer(Vehicle());
   Body body(Vehicle());
@@ -357,6 +374,7 @@ TEST(DisturbanceObserver, KnowsAfterAHoverWhatHeldTheVehicle) {
   EXPECT_NEAR(learnt.force_W.x(), wind, 1e-3 * wind);
   EXPECT_NEAR(learnt.force_W.z(), 0.0, 1e-3 * wind);
   EXPECT_NEAR(observer.steady_force_W().x(), wind, 1e-3 * wind);
+  EXPECT_NEAR(observer.gust_force(), 0.3 * wind, 1e-3 * wind);
   EXPECT_LT(learnt.moment_B.norm(), 1e-9);
   // The flight goes on from there: no step is lost and nothing jumps.
   const Disturbance before = learnt;

@@ -26,6 +26,11 @@ constexpr double kLeastGain = 0.5,
                  kGreatestGain = 2.0;  // mass and thrust off by a third, either way
 constexpr double kLeastLift = 0.3;     // of the weight: with less the factor is not seen
 
+constexpr double kGustMemory = 30.0;  // [s]
+// What a hover tells of gusts: they are this share of the wind's force, as if seen for so long.
+constexpr double kHoverGusts = 0.3;     // [-]
+constexpr double kHoverGustTime = 1.0;  // [s]
+
 constexpr double kHoverTimes = 10.0;  // so many steady times are a long hover ...
 constexpr double kHoverStep = 0.002;  // ... in such steps [s]
 
@@ -127,6 +132,8 @@ void DisturbanceObserver::Hover(const estimation::VehicleState& state,
   }
   // At a start the actuators are told the model's commands, which say nothing of the moment.
   disturbance_.moment_B.setZero();
+  gust_square_ = kHoverGusts * kHoverGusts * steady_force_W_.squaredNorm();
+  gust_time_ = kHoverGustTime;
 }
 
 void DisturbanceObserver::Predict(double dt) noexcept {
@@ -166,12 +173,20 @@ void DisturbanceObserver::Correct(const estimation::VehicleState& state, double 
   Shorten(force_max_, &disturbance_.force_W);
   steady_force_W_ +=
       (1.0 - std::exp(-dt / options_.steady_time)) * (disturbance_.force_W - steady_force_W_);
+  NoteGust(dt);
 
   const double z_w = std::exp(-options_.moment_bandwidth * dt);
   const Eigen::Vector3d e_w = state.w_WB_B - w_WB_B_;
   w_WB_B_ += (1.0 - z_w * z_w) * e_w;
   disturbance_.moment_B += (1.0 - z_w) * (1.0 - z_w) / dt * model_.MomentFor(e_w);
   Shorten(moment_max_, &disturbance_.moment_B);
+}
+
+// A gust may follow a lull of many seconds, so the memory is long.
+void DisturbanceObserver::NoteGust(double dt) noexcept {
+  gust_time_ = std::min(gust_time_ + dt, kGustMemory);
+  const double square = (disturbance_.force_W - steady_force_W_).squaredNorm();
+  gust_square_ += dt / gust_time_ * (square - gust_square_);
 }
 
 }  // namespace touchdown::control

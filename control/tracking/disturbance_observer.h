@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cmath>
+
 #include <Eigen/Core>
 
 #include "control/tracking/mixer.h"
@@ -49,11 +51,14 @@ class DisturbanceObserver {
   const Disturbance& disturbance() const { return disturbance_; }
   /// The force without its quick changes [N]: what plans can account for.
   const Eigen::Vector3d& steady_force_W() const { return steady_force_W_; }
+  /// Root mean square of the quick changes of late [N]: how strong gusts are.
+  double gust_force() const { return std::sqrt(gust_square_); }
 
  private:
   void Predict(double dt) noexcept;
   void LearnGain(double dt) noexcept;
   void Correct(const estimation::VehicleState& state, double dt) noexcept;
+  void NoteGust(double dt) noexcept;
 
   estimation::VehicleModel model_;
   DisturbanceObserverOptions options_;
@@ -68,6 +73,8 @@ class DisturbanceObserver {
   Eigen::Vector3d w_WB_B_ = Eigen::Vector3d::Zero();  ///< the same
   Disturbance disturbance_;
   Eigen::Vector3d steady_force_W_ = Eigen::Vector3d::Zero();
+  double gust_square_ = 0.0;  ///< mean square of the force's quick changes [N^2]
+  double gust_time_ = 0.0;    ///< the mean is over this [s]
 };
 
 }  // namespace touchdown::control

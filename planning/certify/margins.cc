@@ -15,16 +15,16 @@ constexpr double kSigmas = 3.0;
 constexpr double kDrift = 0.03;
 constexpr double kSeenFrom = 1.0;  // the last look at a cell beside the way is from so far [m]
 constexpr double kLeastTracking = 0.04;  // [m]
-constexpr double kGusts = 0.02;          // of the reference per steady pull [m per m/s^2]
+constexpr double kGusts = 0.08;          // off the reference per gust [m per m/s^2]
 
 }  // namespace
 
 Margins MarginsOf(double sigma_position, double sigma_attitude, double recent_tracking,
-                  const Eigen::Vector3d& pull_W) noexcept {
+                  double gust) noexcept {
   Margins margins;
   margins.own_state = kSigmas * std::min(sigma_position, kDrift);
   margins.attitude = kSigmas * kSeenFrom * sigma_attitude;
-  margins.tracking = std::max(kLeastTracking, recent_tracking) + kGusts * pull_W.head<2>().norm();
+  margins.tracking = std::max(kLeastTracking, recent_tracking) + kGusts * gust;
   return margins;
 }
 

@@ -7,7 +7,7 @@ namespace touchdown::planning {
 namespace {
 
 TEST(Margins, CalmFlightWithATrueStateStaysNarrow) {
-  const Margins calm = MarginsOf(0.0, 0.0, 0.0, {0, 0, 0});
+  const Margins calm = MarginsOf(0.0, 0.0, 0.0, 0.0);
   EXPECT_EQ(calm.own_state, 0.0);
   EXPECT_EQ(calm.attitude, 0.0);
   EXPECT_GT(calm.tracking, 0.0);
@@ -15,18 +15,16 @@ TEST(Margins, CalmFlightWithATrueStateStaysNarrow) {
 }
 
 TEST(Margins, EachGrowsWithWhatItPaysForAlone) {
-  const Margins calm = MarginsOf(0.0, 0.0, 0.0, {0, 0, 0});
-  const Margins lost = MarginsOf(0.02, 0.0, 0.0, {0, 0, 0});
+  const Margins calm = MarginsOf(0.0, 0.0, 0.0, 0.0);
+  const Margins lost = MarginsOf(0.02, 0.0, 0.0, 0.0);
   EXPECT_DOUBLE_EQ(lost.own_state, 0.06);
   EXPECT_EQ(lost.tracking, calm.tracking);
-  EXPECT_LT(MarginsOf(5.0, 0.0, 0.0, {0, 0, 0}).own_state, 0.1)
+  EXPECT_LT(MarginsOf(5.0, 0.0, 0.0, 0.0).own_state, 0.1)
       << "who does not know where in W it is still knows how far it has come";
-  EXPECT_GT(MarginsOf(0.0, 0.01, 0.0, {0, 0, 0}).attitude, 0.0);
-  EXPECT_DOUBLE_EQ(MarginsOf(0.0, 0.0, 0.3, {0, 0, 0}).tracking, 0.3);
-  const Margins windy = MarginsOf(0.0, 0.0, 0.0, {3.0, 4.0, 0.0});
+  EXPECT_GT(MarginsOf(0.0, 0.01, 0.0, 0.0).attitude, 0.0);
+  EXPECT_DOUBLE_EQ(MarginsOf(0.0, 0.0, 0.3, 0.0).tracking, 0.3);
+  const Margins windy = MarginsOf(0.0, 0.0, 0.0, 1.0);
   EXPECT_GT(windy.tracking, calm.tracking);
-  EXPECT_EQ(MarginsOf(0.0, 0.0, 0.0, {0, 0, -3.0}).tracking, calm.tracking)
-      << "a vehicle that is heavier than it knows is no gust";
   EXPECT_DOUBLE_EQ(windy.Sum(), windy.own_state + windy.attitude + windy.tracking);
 }
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <Eigen/Core>
-
 namespace touchdown::planning {
 
 /// The parts of the room around the hull, at one moment (docs/safety.md) [m].
@@ -16,10 +14,11 @@ struct Margins {
 };
 
 /// Margins from the vehicle's own estimates: one standard deviation of its position [m] and of its
-/// attitude [rad], and its recent distance from its reference [m]. `pull_W` is the steady force on
-/// it over its mass [m/s^2]. Only its horizontal part counts: wind that pushes comes in gusts.
+/// attitude [rad], and its recent distance from its reference [m]. `gust` is the root mean square
+/// of the force's quick changes over the vehicle's mass [m/s^2]: steady wind is balanced, a gust
+/// pushes.
 Margins MarginsOf(double sigma_position, double sigma_attitude, double recent_tracking,
-                  const Eigen::Vector3d& pull_W) noexcept;
+                  double gust) noexcept;
 
 /// The largest recent error: it fades with kFade [s].
 class RecentError {
