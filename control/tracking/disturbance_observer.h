@@ -51,7 +51,7 @@ class DisturbanceObserver {
   const Disturbance& disturbance() const { return disturbance_; }
   /// The force without its quick changes [N]: what plans can account for.
   const Eigen::Vector3d& steady_force_W() const { return steady_force_W_; }
-  /// Root mean square of the quick changes of late [N]: how strong gusts are.
+  /// Root mean square of the quick changes [N], over 30 s: how strong gusts are.
   double gust_force() const { return std::sqrt(gust_square_); }
 
  private:

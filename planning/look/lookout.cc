@@ -15,6 +15,8 @@ namespace {
 
 constexpr int kMostSpans = 150000;      // that a search expands: more than a window mostly has
 constexpr double kBetweenBalls = 0.15;  // along the way [m]
+constexpr double kBetweenTested =
+    0.3;  // balls: they leave out 3 cm of what the hull sweeps between them [m]
 constexpr double kSoon = 1.5;           // cells so far along it are worth a third of the first [m]
 constexpr double kFar = 4.0 * kSoon;    // beyond what was seen: 2 % of the first [m]
 constexpr std::size_t kMostNeeded = 600;  // cells
@@ -64,10 +66,8 @@ bool IsStruck(const Viewpoint& view, const std::vector<Viewpoint>& struck) {
 
 }  // namespace
 
-Lookout::Lookout(double vertical_cost)
-    : vertical_cost_(vertical_cost),
-      search_({.vertical = vertical_cost}),
-      far_search_({.vertical = vertical_cost}) {
+Lookout::Lookout(const PathCost& cost)
+    : cost_(cost), search_({.vertical = cost.vertical}), far_search_({.vertical = cost.vertical}) {
   for (GuidePath* path : {&path_, &back_}) path->reserve(kUsualPath);
   needed_.reserve(kUsualNeeded);
   places_.reserve(2 * kMostPlaces);
@@ -156,7 +156,7 @@ double Lookout::Least(const OccupancyMap& map, const Eigen::Vector3d& from,
   const Eigen::Array3d way = (map.CellOf(goal) - map.CellOf(from)).cast<double>().array().abs();
   const double longer = way.head<2>().maxCoeff(), shorter = way.head<2>().minCoeff();
   return map.resolution() *
-         (longer + (std::numbers::sqrt2 - 1.0) * shorter + vertical_cost_ * way.z());
+         (longer + (std::numbers::sqrt2 - 1.0) * shorter + cost_.vertical * way.z());
 }
 
 void Lookout::BeginAt(const Eigen::Vector3d& from) {
@@ -229,50 +229,59 @@ void Lookout::Flood(const HullSpace& hull, const Place& from) {
   }
 }
 
+/// Beside the vehicle cells may be unseen that its camera passed.
+bool Lookout::Fits(const HullSpace& hull, const Eigen::Vector3d& p) const {
+  const OccupancyMap& map = *hull.space->map;
+  return !hull.space->Blocked(p) && ForEachUnseen(hull, p, [&](const CellIndex& cell) {
+    return !map.IsOccupied(cell) &&
+           WasThere(cell, begin_.p_W, p, hull.radius() + kSweepRoom, map.resolution());
+  });
+}
+
+bool Lookout::Leads(const HullSpace& hull, const Eigen::Vector3d& a,
+                    const Eigen::Vector3d& b) const {
+  const int steps = std::max(1, static_cast<int>(std::ceil((b - a).norm() / kBetweenTested)));
+  for (int i = 1; i <= steps; ++i) {
+    if (!Fits(hull, a + (b - a) * i / steps)) return false;
+  }
+  return true;
+}
+
 void Lookout::Flood(const HullSpace& hull, const Place& from, long stride) {
   const OccupancyMap& map = *hull.space->map;
   const double side = static_cast<double>(stride) * map.resolution();
-  const double covered = 2.0 * (hull.radius() + kSweepRoom);  // by the balls at both ends
   const std::size_t most = places_.size() + kMostPlaces;
   const auto place = [&](const CellIndex& node) -> Eigen::Vector3d {
     return from.p_W + side * node.cast<double>();
   };
-  const auto fits = [&](const Eigen::Vector3d& p) {
-    return !hull.space->Blocked(p) && ForEachUnseen(hull, p, [&](const CellIndex& cell) {
-      return !map.IsOccupied(cell) &&
-             WasThere(cell, begin_.p_W, p, hull.radius() + kSweepRoom, map.resolution());
-    });
-  };
-  // Of a place: how far it is, or that the hull does not fit.
-  constexpr float kClosed = -1.0f;
+  constexpr float kFits = 0.0f, kClosed = 1.0f, kReached = 2.0f;  // of a place
   const auto farther = [](const Entry& a, const Entry& b) { return a.way > b.way; };
   numbers_.Begin(map);
   queue_.clear();
   queue_.push_back({0.0f, CellIndex::Zero(), -1});
-  numbers_.At(map.CellOf(from.p_W)) = 0.0f;
-  while (!queue_.empty()) {
-    if (places_.size() == most) return;
+  while (!queue_.empty() && places_.size() < most) {
     std::pop_heap(queue_.begin(), queue_.end(), farther);
     const Entry at = queue_.back();
     queue_.pop_back();
     const Eigen::Vector3d here = place(at.node);
-    if (at.way > numbers_.At(map.CellOf(here))) continue;
+    float& reached = numbers_.At(map.CellOf(here));
+    if (reached == kReached) continue;
+    // Few of the ways between places are taken: so they are tested here.
+    if (at.from >= 0 && !Leads(hull, places_[static_cast<std::size_t>(at.from)].p_W, here))
+      continue;
+    reached = kReached;
     const auto index = static_cast<int>(places_.size());
     places_.push_back({here, from.way + static_cast<double>(at.way), at.from});
     for (int i = 0; i < 27; ++i) {
       const CellIndex step(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
-      const Eigen::Vector3d there = place(at.node + step), between = 0.5 * (here + there);
+      const Eigen::Vector3d there = place(at.node + step);
       const CellIndex cell = map.CellOf(there);
       if (!map.InWindow(cell)) continue;
       float& known = numbers_.At(cell);
-      if (known == CellNumbers::kNone && !fits(there)) known = kClosed;
+      if (known == CellNumbers::kNone) known = Fits(hull, there) ? kFits : kClosed;
+      if (known != kFits) continue;
       const double length = side * step.cast<double>().norm();
-      const float way = at.way + static_cast<float>(length);
-      if (way >= known || hull.space->Blocked(between)) continue;
-      // Beside the vehicle cells may be unseen that its camera passed.
-      if ((at.node.isZero() || length > covered) && !fits(between)) continue;
-      known = way;
-      queue_.push_back({way, at.node + step, index});
+      queue_.push_back({at.way + static_cast<float>(length), at.node + step, index});
       std::push_heap(queue_.begin(), queue_.end(), farther);
     }
   }

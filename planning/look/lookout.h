@@ -28,7 +28,7 @@ struct Look {
 /// Allocates only to grow to a high-water mark.
 class Lookout {
  public:
-  explicit Lookout(double vertical_cost);
+  explicit Lookout(const PathCost& cost);
 
   /// Makes room for maps with this one's window.
   void Prepare(const FreeSpace& space);
@@ -39,6 +39,9 @@ class Lookout {
   /// The potential: what the shortest way over what is not known to block costs [m]. Where none leads to the goal within
   /// the window it ends where it leaves that, and the rest is straight. Infinite: there is none.
   double Length(const FreeSpace& space, const Eigen::Vector3d& from, const Eigen::Vector3d& goal);
+
+  /// Whether a metre beside something costs more, as it does planners: where the hull just fits, no curve may.
+  void PreferWide(bool wide) { search_.set_cost({cost_.vertical, wide ? cost_.tight : 1.0}); }
 
   /// Where the way of the last Length ends: at the goal, or where it leaves the window.
   SpanSearch::End end() const { return end_; }
@@ -63,6 +66,9 @@ class Lookout {
 
   /// How far that way leads through cells that were seen free [m].
   double seen() const { return seen_until_.way; }
+
+  /// A straight way leads from a to b through cells that were seen free. @pre a look
+  bool Leads(const HullSpace& hull, const Eigen::Vector3d& a, const Eigen::Vector3d& b) const;
 
   /// From where most of the needed cells are seen in the time that it takes, of all places to which cells lead that
   /// were seen free. Not from where `struck` is. nullptr: from nowhere. Valid until the next call. @pre NoteNeeded
@@ -98,6 +104,7 @@ class Lookout {
     double time;  ///< [s]
   };
 
+  bool Fits(const HullSpace& hull, const Eigen::Vector3d& p) const;
   void Flood(const HullSpace& hull, const Place& from);
   void Flood(const HullSpace& hull, const Place& from, long stride);
   void BeginAt(const Eigen::Vector3d& from);
@@ -127,7 +134,7 @@ class Lookout {
     int from;  // place
   };
 
-  double vertical_cost_;
+  PathCost cost_;
   SpanSearch search_;
   SpanSearch far_search_;
   std::optional<FarMemory> far_;

@@ -31,7 +31,8 @@ constexpr std::size_t kUsualSteps = 1000, kUsualStruck = 100;
 
 constexpr int kTurnsAround = 4;                  // on the spot, to see all around
 constexpr double kNear = 0.3, kTurnedTo = 0.2;   // of a viewpoint [m], [rad]
-constexpr double kTries = 0.6, kStill = 0.15;    // a part of the way [s], [m/s]
+constexpr double kTries = 0.6, kStill = 0.15;    // a part of the way [s], [m/s] ...
+constexpr double kShortest = 0.1;                // ... of so much [m]
 constexpr int kLooks = 3;                        // images that are used there
 constexpr double kEnough = 0.05;                 // of its cells may stay unseen
 constexpr double kSlowest = 0.4, kLonger = 5.0;  // on the way there [m/s], and more [s]
@@ -41,7 +42,7 @@ constexpr double kSlowest = 0.4, kLonger = 5.0;  // on the way there [m/s], and 
 class Scout::Impl {
  public:
   explicit Impl(const ReplannerOptions& options)
-      : options_(options), lookout_(options.vertical_cost) {
+      : options_(options), lookout_({options.vertical_cost, options.constants.tight_cost}) {
     was_.reserve(kUsualSteps);
     struck_.reserve(kUsualStruck);
   }
@@ -56,7 +57,7 @@ class Scout::Impl {
     if (cameras.empty() || WrongInState(input) || WrongInTarget(input, options_.max_duration)) {
       return std::nullopt;
     }
-    Was now = {input.t_now, 0, input.vehicle.p_WB, Goal(input, map)};
+    Was now = {input.t_now, 0, input.vehicle.p_WB, Goal(input, map), input.vehicle.v_WB.norm()};
     for (const LookCamera& camera : cameras) now.images += camera.images;
     Note(now);
     const bool at_goal = (now.goal_W - now.p_WB).norm() < kAtGoal;
@@ -89,6 +90,7 @@ class Scout::Impl {
     double t;
     int images;  // used until then
     Eigen::Vector3d p_WB, goal_W;
+    double speed;
   };
 
   // The way that it goes.
@@ -115,10 +117,12 @@ class Scout::Impl {
     return was.t <= now.t - kPatience && (whatever_images || was.images <= now.images - kImages);
   }
 
+  bool IsStill() const { return was_.back().speed < kStill; }
+
   /// For as long as a question takes.
   bool Stands() const {
     const Was& now = was_.back();
-    return IsLongAgo(was_.front(), now, true) &&
+    return IsStill() && IsLongAgo(was_.front(), now, true) &&
            std::all_of(was_.begin(), was_.end(),
                        [&](const Was& was) { return (was.p_WB - now.p_WB).norm() < kNearer; });
   }
@@ -133,23 +137,42 @@ class Scout::Impl {
   /// From now on to this place on the way of the look.
   void AimAt(std::size_t place) {
     aim_ = place;
+    leg_ = (Aim().p_WB - was_.back().p_WB).norm();
     was_.erase(was_.begin(), was_.end() - 1);
     until_ = was_.back().t + look_->way / kSlowest + kLonger;
   }
-  /// No plan leads there: at half of the way that is left. False: that is here.
-  bool AimsNearer() {
-    const auto from_here = [&](std::size_t place) {
-      return (look_->way_W[place] - was_.back().p_WB).norm();
-    };
+  /// No plan leads there: to the farthest place before it to which a straight way leads. Where one leads to it, that was
+  /// tried: at most half as far. False: there is none.
+  bool AimsNearer(const ReplanInput& input, const OccupancyMap& map) {
+    const FreeSpace space = SpaceOf(input, map);
+    const HullSpace hull = HullFor(options_, space, input.margins.Sum(), DeckOf(input));
+    const Eigen::Vector3d& here = was_.back().p_WB;
+    const auto from_here = [&](std::size_t place) { return (look_->way_W[place] - here).norm(); };
     for (std::size_t place = reached_; place < aim_; ++place) {
       if (from_here(place) < from_here(reached_)) reached_ = place;
     }
-    const std::size_t half = (reached_ + aim_) / 2;
-    if (half == reached_ || from_here(half) < kNear) return false;
-    AimAt(half);
-    return true;
+    const bool tried = lookout_.Leads(hull, here, Aim().p_WB);
+    const double most = tried ? 0.5 * leg_ : std::numeric_limits<double>::infinity();
+    for (std::size_t place = aim_; place > reached_ + 1;) {
+      --place;
+      const double leg = from_here(place);
+      if (leg < kShortest || leg > most || !lookout_.Leads(hull, here, look_->way_W[place]))
+        continue;
+      AimAt(place);
+      return true;
+    }
+    return false;
   }
+  bool InPart() const { return aim_ + 1 < look_->way_W.size(); }
   Viewpoint Aim() const { return {look_->way_W[aim_], look_->from.yaw}; }
+
+  FreeSpace SpaceOf(const ReplanInput& input, const OccupancyMap& map) const {
+    FreeSpace space = SpaceFor(options_, map);
+    LayPadStrip(*input.pad, input.endpoint, was_.back().p_WB, input.t_start,
+                input.t_start + options_.min_duration, options_.pad_radius, options_.contact_height,
+                &space);
+    return space;
+  }
 
   /// Where the vehicle wants to be in the end: a descent that pauses wants to go on.
   Eigen::Vector3d Goal(const ReplanInput& input, const OccupancyMap& map) const {
@@ -168,10 +191,7 @@ class Scout::Impl {
   void Search(const ReplanInput& input, const std::vector<LookCamera>& cameras,
               const OccupancyMap& map) {
     const Was& now = was_.back();
-    FreeSpace space = SpaceFor(options_, map);
-    LayPadStrip(*input.pad, input.endpoint, now.p_WB, input.t_start,
-                input.t_start + options_.min_duration, options_.pad_radius, options_.contact_height,
-                &space);
+    const FreeSpace space = SpaceOf(input, map);
     const HullSpace hull = HullFor(options_, space, input.margins.Sum(), DeckOf(input));
     const double yaw = estimation::Yaw(input.vehicle.q_WB);
     lookout_.Keep(space);
@@ -244,6 +264,7 @@ class Scout::Impl {
     if (nearer) {
       best_ = length_;
       way_ = Way::kPlanned;
+      lookout_.PreferWide(false);
     }
     if (nearer || IsStraight(map)) {
       detour_ = 0.0;
@@ -336,17 +357,17 @@ class Scout::Impl {
     }
     const bool closed = SpaceFor(options_, map).Blocked(look_->from.p_WB);
     const bool in_vain = closed || (images_there_ && now.images >= *images_there_ + kLooks);
-    const bool in_part = aim_ + 1 < look_->way_W.size();
-    const bool still = now.t >= was_.front().t + kTries && input.vehicle.v_WB.norm() < kStill;
-    const bool stands = !near && (Stands() || (in_part && still));
-    if (in_part && (now.p_WB - Aim().p_WB).norm() < kNear) {
+    const bool still = now.t >= was_.front().t + kTries && IsStill();
+    const bool stands = !near && (Stands() || (InPart() && still));
+    if (InPart() && (now.p_WB - Aim().p_WB).norm() < std::min(kNear, 0.5 * leg_)) {
       if (look_->cells.empty()) return Ends("ends: a part of the way was flown");
       reached_ = aim_;
       AimAt(look_->way_W.size() - 1);
       return true;
     }
-    if (stands && AimsNearer()) return true;
+    if (!near && still && AimsNearer(input, map)) return true;
     if (!in_vain && !stands && now.t < until_) return true;
+    if (!closed && !in_vain) lookout_.PreferWide(true);
     if (way_ == Way::kUp && !near) EndClimb();
     if (passes) way_ = Way::kPlanned;
     if (struck_.size() == kUsualStruck) struck_.erase(struck_.begin());
@@ -376,6 +397,7 @@ class Scout::Impl {
   bool up_ = false;                  // as high as it could climb, for that best
   const Look* look_ = nullptr;       // where it flies to; nullptr: to the goal
   std::size_t aim_ = 0, reached_ = 0;  // of the places on the way there
+  double leg_ = 0.0;                   // from where it aimed there [m]
   double until_ = 0.0;               // it is to be over [s]
   std::optional<int> images_there_;  // used before the first one from there
   std::vector<Viewpoint> struck_;    // looked from in vain

@@ -32,6 +32,7 @@ constexpr std::array<Step, 8> kSteps = {{{1, 0, 1.0f},
                                          {1, -1, kDiagonal},
                                          {-1, 1, kDiagonal},
                                          {-1, -1, kDiagonal}}};
+constexpr int kStraightSteps = 4;     // come first
 constexpr int kSelf = kSteps.size();  // no step at all
 constexpr float kStepsOfCell = 4.0f;  // of f, that the queue distinguishes, ...
 constexpr float kFarthest = 1e6f;     // ... up to here
@@ -80,13 +81,16 @@ std::uint32_t SpanSearch::Queue::Pop() {
   return entry.address;
 }
 
-SpanSearch::SpanSearch(const PathCost& cost, double greed)
-    : vertical_cost_(static_cast<float>(cost.vertical)),
-      tight_cost_(static_cast<float>(cost.tight)),
-      greed_(static_cast<float>(greed)) {
+SpanSearch::SpanSearch(const PathCost& cost, double greed) : greed_(static_cast<float>(greed)) {
+  RequireFactor("greed", greed);
+  set_cost(cost);
+}
+
+void SpanSearch::set_cost(const PathCost& cost) {
   RequireFactor("vertical cost", cost.vertical);
   RequireFactor("tight cost", cost.tight);
-  RequireFactor("greed", greed);
+  vertical_cost_ = static_cast<float>(cost.vertical);
+  tight_cost_ = static_cast<float>(cost.tight);
 }
 
 void SpanSearch::Reserve(const OccupancyMap& map) {
@@ -268,6 +272,10 @@ SearchStatus SpanSearch::SearchOn(const CellIndex& start, const CellIndex& goal,
         const int low = std::max(own.low, span.low), high = std::min(own.high, span.high);
         if (low > high) continue;
         const int to_z = std::clamp(z, low, high);
+        // Between two corners that touch nothing fits.
+        const bool fits = s < kStraightSteps || columns_.IdAt({to_x, y, to_z}) >= 0 ||
+                          columns_.IdAt({x, to_y, to_z}) >= 0;
+        if (!fits) continue;
         level |= to_z == z;
         const Node& there = nodes_[address(to_x, to_y, to_id)];
         if (there.search == search_ && there.closed) continue;

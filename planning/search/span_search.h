@@ -29,6 +29,9 @@ class SpanSearch {
   /// 100].
   explicit SpanSearch(const PathCost& cost = {}, double greed = 1.0);
 
+  /// From the next search on.
+  void set_cost(const PathCost& cost);
+
   /// Makes room for searches on maps with this one's window, which the first search does otherwise.
   void Reserve(const OccupancyMap& map);
 

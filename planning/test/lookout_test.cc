@@ -76,7 +76,7 @@ class Survey : public ::testing::Test {
   Eigen::Vector3d at_ = {0.05, 0.05, 0.0};
   FreeSpace space_;
   estimation::VehicleState vehicle_;
-  Lookout lookout_{2.0};
+  Lookout lookout_{PathCost{2.0, 8.0}};
 };
 
 TEST_F(Survey, ThePotentialIsTheShortestWay) {
@@ -221,6 +221,17 @@ TEST_F(Survey, OfManyPlacesThoseCountThatSeePastObstacles) {
 }
 
 // Through a gap hardly wider than the hull, places on a coarse lattice are not connected.
+TEST_F(Survey, AStraightWayLeadsWhereTheWholeHullSweepsFreeCells) {
+  map_.MarkFree(at_, 0.8);
+  const auto leads = [&](double length) {
+    const Eigen::Vector3d to = at_ + Eigen::Vector3d(length, 0.0, 0.0);
+    map_.MarkFree(to, 0.8);
+    return lookout_.Leads(Hull(), at_, to);
+  };
+  EXPECT_FALSE(leads(1.5)) << "0.28 m beside the way's middle cells are unseen";
+  EXPECT_TRUE(leads(1.0));
+}
+
 TEST_F(Survey, PlacesBehindAGapOnTheWayAreReached) {
   Wall(3.05, -13.0, -0.6);
   Wall(3.05, 0.75, 13.0);

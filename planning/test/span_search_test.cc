@@ -139,6 +139,18 @@ TEST(SpanSearch, WidePassagesArePreferredToTightOnes) {
   EXPECT_GT(crosses_at(SpanSearch({2.0, 8.0})), 0.6);
 }
 
+TEST(SpanSearch, NothingFitsBetweenTwoCornersThatTouch) {
+  OccupancyMap map(SmallMap(0.0));
+  Fill(&map, {0.0, -9.0, -9.0}, {0.1, 0.1, 9.0});
+  const FreeSpace space = SpaceOf(map);
+  SpanSearch search(kPlain);
+  GuidePath path;
+  const Eigen::Vector3d from(-1.05, 0.55, 0.05), to(1.05, -0.55, 0.05);
+  EXPECT_EQ(search.Search(space, from, to, kEnough, &path), SearchStatus::kFound);
+  Fill(&map, {0.1, 0.1, -9.0}, {0.2, 9.0, 9.0});
+  EXPECT_EQ(search.Search(space, from, to, kEnough, &path), SearchStatus::kNoPath);
+}
+
 TEST(SpanSearch, LooksAtNoWayThatCostsMoreThanAllowed) {
   OccupancyMap map(SmallMap(0.0));
   Fill(&map, {0.0, -1.0, -1.6}, {0.2, 1.0, 1.6});
