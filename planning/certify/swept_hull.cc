@@ -281,13 +281,15 @@ class Tube {
 };
 
 /// Whether the feet are no more than `below` the deck [m] as far as the hull may be over it. Close over it they may
-/// sink [m/s] no faster than they may touch it. A start that is so close already is exempt.
-bool AboveDeck(const HullSpace& hull, const Eigen::Vector3d& p, double t, double sinks,
+/// move [m/s] no faster than they may touch it. A start that is so close already is exempt.
+bool AboveDeck(const HullSpace& hull, const Eigen::Vector3d& p, double t, const Eigen::Vector3d& v,
                double below, const Eigen::Vector3d& start) {
   if (hull.pad == nullptr || p.z() >= start.z() - kRounding) return true;
   const estimation::PadState pad = hull.pad->MeanAt(t);
   const double deck_feet = pad.p_WP.z() + hull.foot_depth, above = p.z() - deck_feet;
-  const bool softly = sinks + pad.v_WP.z() <= kLandingRoom * kSoftSink;
+  const Eigen::Vector3d v_PB = v - pad.v_WP;
+  const bool softly =
+      -v_PB.z() <= kLandingRoom * kSoftSink && v_PB.head<2>().norm() <= kLandingRoom * kSoftDrift;
   if (above >= kLow || (above >= -below && (softly || start.z() < deck_feet + kLow))) return true;
   const PadOutline deck = OutlineOf(hull.pad->At(t), hull.deck_half_size);
   return DistanceBeside(deck, p) > hull.radius() + PadOutline::kSigmas * deck.sigma;
@@ -331,8 +333,9 @@ Sweep SweepHull(const UniformBspline& curve, double t_from, double t_to, const H
     const Eigen::Vector3d p = path.At(t);
     const bool may_touch = t >= t_contact;
     if (!LevelKept(*hull.space, p, start.p_W, may_touch)) return sweep;
-    const double sinks = t > t_before ? (before.z() - p.z()) / (t - t_before) : 0.0;
-    if (!may_touch && !AboveDeck(hull, p, t, sinks, below, start.p_W)) return sweep;
+    Eigen::Vector3d v = Eigen::Vector3d::Zero();
+    if (i > 0) v = (p - before) / (t - t_before);
+    if (!may_touch && !AboveDeck(hull, p, t, v, below, start.p_W)) return sweep;
     if (i == 0) stretch.Begin(p);
     if (!stretch.Add(p)) {
       if (!holds(before, t_before)) return sweep;

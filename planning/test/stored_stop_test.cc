@@ -270,6 +270,21 @@ TEST_F(StopOverDeck, ALandingMeetsTheDeckOnlyWhereItIsToTouchIt) {
       << "cells alone allow it";
 }
 
+// A vehicle that brakes leans, and its foot would touch a deck that drives on below.
+TEST_F(StopOverDeck, CloseOverADeckThatDrivesOffNothingRests) {
+  map_.MarkRestFree();
+  const auto rests = [&](double feet, double speed) {
+    const ArcPad drives({0, 0, 0.45}, speed, 0.0, 0.0);
+    hull_.pad = &drives;
+    const UniformBspline stop = Between({{0, 0, 0.87}, {0.8, 0, -0.3}, {0, 0, 0}},
+                                        {{0.3, 0, 0.57 + feet}, {0, 0, 0}, {0, 0, 0}}, 0.8);
+    return SweepHull(stop, 0.0, 0.8, {{0, 0, 0.87}, 0.0}, hull_, kNever).proven;
+  };
+  EXPECT_TRUE(rests(0.06, 0.8));
+  EXPECT_FALSE(rests(0.04, 0.8));
+  EXPECT_TRUE(rests(0.04, 0.4));
+}
+
 // A leaning vehicle's foot touches early: no plan may dive close to the deck and level there.
 TEST_F(StopOverDeck, CloseOverTheDeckNothingSinksFasterThanItMayTouch) {
   map_.MarkRestFree();
