@@ -35,6 +35,7 @@ constexpr double kStripMemory = 2.0;  // the strip over a pad that was lost hold
 constexpr int kUsualPaths = 32;       // room for those of one step
 constexpr int kUsualPathPoints = 512;
 constexpr double kClockRounding = 1e-6;  // [s]
+constexpr double kNearEnd = 0.1;         // of a curve that arrives [m]
 constexpr double kRestartAfter = 2.0;    // a longer pause between calls resets the memory [s]
 
 /// Length of what is left of a curve over the straight line between its ends, at least 1.
@@ -121,6 +122,7 @@ class Replanner::Impl {
   const ReplanResult& RefuseState(const ReplanInput& input, const char* wrong);
   void NoteAsked(double t_start);
   SplineState Start(const ReplanInput& input);
+  bool IsNearEnd(const UniformBspline& curve) const;
   Attempt FirstAttempt(const ReplanInput& input, const SplineState& start, const FreeSpace& plain,
                        AttemptFacts* facts);
   AttemptRequest RequestFor(const ReplanInput& input, const SplineState& start,
@@ -367,6 +369,12 @@ const ReplanResult& Replanner::Impl::Rest(const ReplanInput& input, double climb
   return Finish(fallback_.Rest(FactsFor(input, start, hull), climb, &result_), input.t_start);
 }
 
+/// The curve ends about where plans to the pad are to end then.
+bool Replanner::Impl::IsNearEnd(const UniformBspline& curve) const {
+  const double t = curve.t_end();
+  return (EndStateAt(end_.pad(), end_.target(), t).state.p - curve.Position(t)).norm() < kNearEnd;
+}
+
 /// The first attempt, and the facts that the ladder of attempts depends on. Out of reach: the fresh guess is longer
 /// than a plan may be.
 Attempt Replanner::Impl::FirstAttempt(const ReplanInput& input, const SplineState& start,
@@ -385,6 +393,8 @@ Attempt Replanner::Impl::FirstAttempt(const ReplanInput& input, const SplineStat
   // An arrival once promised is kept: a new guess at every step would postpone it for ever. An arrival that is soon
   // on the straight way need not be on a long way around. An end on the way goes on ahead.
   const double left = next_.curve.t_end() - input.t_start;
+  facts->arrives_soon =
+      end_.target().touches() && left < options_.min_duration && IsNearEnd(next_.curve);
   const bool on_plan = planned_before_ && !result_.from_odometry;
   const bool promised =
       on_plan && !end_.is_on_the_way() &&
@@ -432,9 +442,11 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
     }
     if (reason == ReplanReason::kCollisionRemains && fallback_.NoTimeToBrake(start, space))
       return reason;
-    // Unseen cells may soon be seen: as long as it can, the committed curve goes on.
-    if (reason == ReplanReason::kUnobserved && attempt.number == 0 && on_plan && !facts.at_rest &&
-        !facts.lands_soon && fallback_.GoesOn(FactsFor(input, start, hull), &result_)) {
+    // Unseen cells may soon be seen, and a contact that is near is not to be put off: as long as it can, the committed
+    // curve goes on.
+    const bool waits = reason == ReplanReason::kUnobserved || facts.arrives_soon;
+    if (waits && attempt.number == 0 && on_plan && !facts.at_rest && !facts.lands_soon &&
+        fallback_.GoesOn(FactsFor(input, start, hull), &result_)) {
       return reason;
     }
     facts.lands_well = facts.lands_soon && LandsWell(next_, input.t_start, hull);

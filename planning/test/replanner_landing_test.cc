@@ -78,6 +78,38 @@ TEST(ReplannerLanding, NothingIsKeptShortlyBeforeContact) {
   EXPECT_GT(anew, 15);
 }
 
+// With little acceleration no plan as short as what is left meets a pad that is elsewhere by centimetres. A longer one
+// would, and so would the next: the vehicle hovered over the deck for ever.
+TEST(ReplannerLanding, AContactThatIsNearIsNotPutOff) {
+  const OccupancyMap map = ObservedMap();
+  ReplannerOptions options = Options(ArrivalMode::kFixed);
+  options.deck_half_size = 0.5;
+  options.limits.acceleration = 1.0;
+  Replanner replanner(options, solvers::StandardBackends());
+  FlyAlong({-0.6, 0.0, kDeck + 1.2}, {0.5, 0.0, 0.0}, &replanner);
+  const auto ask = [&](double t, double off) {
+    const ArcPad pad({0.0, off, kDeck}, 0.5, 0.0, 0.0);
+    const FlatState at = replanner.Reference(t);
+    ReplanInput input = Input(at.p_WB, pad, t);
+    input.vehicle.v_WB = at.v_WB;
+    input.endpoint = {.t_reference = t, .height = 0.28, .height_floor = 0.28};
+    input.endpoint.arrival_sink = 0.13;
+    return replanner.Replan(input, map);
+  };
+  double t = 0.0;
+  for (; t == 0.0 || replanner.state().next.curve.t_end() - t > 0.6; t += 0.1) {
+    ASSERT_EQ(ask(t, 0.0).status, ReplanStatus::kPlanned) << t;
+    ASSERT_LT(t, 10.0);
+  }
+  const double t_end = replanner.state().next.curve.t_end();
+  ASSERT_FALSE(replanner.state().next.Lands()) << "it touches the deck too long after its end";
+  const ReplanResult kept = ask(t, 0.06);
+  EXPECT_EQ(kept.status, ReplanStatus::kKept);
+  EXPECT_EQ(kept.reason, ReplanReason::kLimitsExceeded);
+  EXPECT_EQ(replanner.state().next.curve.t_end(), t_end);
+  EXPECT_EQ(ask(t + 0.1, 0.3).status, ReplanStatus::kPlanned) << "it would miss the deck's middle";
+}
+
 TEST_F(LastStretch, ItsPairLands) {
   EXPECT_TRUE(landing_.Lands());
   EXPECT_GT(left(), 0.4);
