@@ -390,7 +390,8 @@ TEST(Onboard, AReferenceThatAStallLostIsNoErrorOfTracking) {
   *onboard.mutable_map() = before;
   fly(2.0, true);
   EXPECT_GT(planned, 0);
-  EXPECT_LT(largest, 0.1);
+  // The reference is metres away. What bends a path without leaning is a gust, and counts.
+  EXPECT_LT(largest, 0.3);
 }
 
 // Nobody knows what has passed when the clock is another one: all that is known gets old.

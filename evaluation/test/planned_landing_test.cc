@@ -92,8 +92,8 @@ TEST(PlannedLanding, CloseStepsAreNotAskedForBeforeThePlanBeforeIsFlown) {
     const TrialResult result = RunTrial(
         Shipped("open", {std::string("planning.latency=") + latency}), 1, StandardRegistries());
     EXPECT_EQ(result.outcome, Outcome::kLanded) << latency;
-    const auto kept = result.replans_by_status.find("kept");
-    const int refused = kept == result.replans_by_status.end() ? 0 : kept->second;
+    const auto early = result.replans_by_reason.find("invalid_input");
+    const int refused = early == result.replans_by_reason.end() ? 0 : early->second;
     EXPECT_LE(refused, 1) << latency << " ms: at the change of the rate";
   }
 }
