@@ -252,6 +252,16 @@ TEST_F(LastStretch, WhoComesToRestKnowsTheDeckBelow) {
   EXPECT_EQ(replanner_->Rest(input, 1.0, map_).status, ReplanStatus::kKept) << "it cannot leave";
 }
 
+// A climb would begin with feet on the deck, and bounce off.
+TEST_F(LastStretch, WhoWillTouchAnywayDoesNotClimb) {
+  t_ = landing_.curve.t_end();
+  const FlatState at = replanner_->Reference(t_);
+  ReplanInput input = Input(at.p_WB, pad_, t_);
+  input.vehicle.v_WB = at.v_WB;
+  EXPECT_EQ(replanner_->Rest(input, 1.0, map_).status, ReplanStatus::kKept);
+  EXPECT_TRUE(replanner_->state().next.Lands());
+}
+
 TEST_F(LastStretch, ContactThatNeverComesEndsIt) {
   // The deck is lower than estimated: the pair is flown to its end, and past it for a limited time.
   // Nothing else is proven meanwhile.
