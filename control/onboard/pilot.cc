@@ -372,8 +372,8 @@ ControlOutput Pilot::Blind(double t, const planning::FlatState& reference) const
   ControlOutput level;
   level.wrench.thrust =
       settling_.CarriedShare(t) * model_.HoverThrust() / disturbance().thrust_gain;
-  level.R_WB_desired =
-      Eigen::AngleAxisd(reference.yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  level.R_WB_desired.setIdentity();  // its third axis is upright to the last bit
+  level.R_WB_desired.topLeftCorner<2, 2>() = Eigen::Rotation2Dd(reference.yaw).toRotationMatrix();
   return level;
 }
 

@@ -243,7 +243,7 @@ TEST(OnboardFlights, LandThoughTheOwnStateIsAwayForAWhile) {
     mess.autopilot = autopilot;
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
       ExpectLanded(Fly(seed, mess), std::to_string(mess.blind) + " s, seed " + std::to_string(seed),
-                   0.5);  // blind before the contact: of 150 seeds 7 are off by more than 0.3
+                   autopilot ? 0.3 : 0.5);  // of 150 seeds 12 beyond 0.3, and 3 tumble
     }
   }
 }
@@ -407,7 +407,7 @@ TEST(OnboardFlights, NoClockFreezesThemOrLeadsThemAstray) {
         EXPECT_TRUE(answer->proven || at_deck) << seed << ", " << k;  // docs/safety.md says when
       }
       if (setpoint.level) {
-        EXPECT_TRUE(setpoint.wrench.moment_B.isZero() && setpoint.R_WB.col(2).z() > 1.0 - 1e-12);
+        EXPECT_TRUE(setpoint.wrench.moment_B.isZero() && setpoint.R_WB.col(2).z() == 1.0);
       }
       nearest_wall = std::min(nearest_wall, DistanceTo(world.wall, world.vehicle.p_WB));
       same = !setpoint.level && setpoint.thrusts == last.thrusts && setpoint.t == last.t ? same + 1

@@ -27,8 +27,6 @@ constexpr double kAhead =
 constexpr double kRounding = 1e-9;  // of heights of cells and deck [m]
 constexpr double kFaceRange = 1.5;  // the deck was looked at from so far, about, at last [m]
 constexpr double kFaceSlack = 0.02;  // of feet that are about to meet the deck [m]
-constexpr double kLow =
-    0.05;  // a foot of a vehicle that leans by 20 degrees hangs so much lower [m]
 constexpr double kLevel = 2e-3;  // rounding of floor and ceiling: kChordSagitta [m]
 
 /// Positions along a curve. A piece of it costs less as a whole than position by position. Past its end the curve
@@ -290,7 +288,8 @@ bool AboveDeck(const HullSpace& hull, const Eigen::Vector3d& p, double t, const 
   const Eigen::Vector3d v_PB = v - pad.v_WP;
   const bool softly =
       -v_PB.z() <= kLandingRoom * kSoftSink && v_PB.head<2>().norm() <= kLandingRoom * kSoftDrift;
-  if (above >= kLow || (above >= -below && (softly || start.z() < deck_feet + kLow))) return true;
+  if (above >= kFootLowers || (above >= -below && (softly || start.z() < deck_feet + kFootLowers)))
+    return true;
   const PadOutline deck = OutlineOf(hull.pad->At(t), hull.deck_half_size);
   return DistanceBeside(deck, p) > hull.radius() + PadOutline::kSigmas * deck.sigma;
 }
@@ -334,7 +333,7 @@ Sweep SweepHull(const UniformBspline& curve, double t_from, double t_to, const H
     const bool may_touch = t >= t_contact;
     if (!LevelKept(*hull.space, p, start.p_W, may_touch)) return sweep;
     Eigen::Vector3d v = Eigen::Vector3d::Zero();
-    if (i > 0) v = (p - before) / (t - t_before);
+    if (t > t_before) v = (p - before) / (t - t_before);
     if (!may_touch && !AboveDeck(hull, p, t, v, below, start.p_W)) return sweep;
     if (i == 0) stretch.Begin(p);
     if (!stretch.Add(p)) {

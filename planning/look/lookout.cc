@@ -240,8 +240,13 @@ bool Lookout::Fits(const HullSpace& hull, const Eigen::Vector3d& p) const {
 
 bool Lookout::Leads(const HullSpace& hull, const Eigen::Vector3d& a,
                     const Eigen::Vector3d& b) const {
-  const int steps = std::max(1, static_cast<int>(std::ceil((b - a).norm() / kBetweenTested)));
-  for (int i = 1; i <= steps; ++i) {
+  return FitsBetween(hull, a, b) && Fits(hull, b);
+}
+
+bool Lookout::FitsBetween(const HullSpace& hull, const Eigen::Vector3d& a,
+                          const Eigen::Vector3d& b) const {
+  const int steps = static_cast<int>(std::ceil((b - a).norm() / kBetweenTested));
+  for (int i = 1; i < steps; ++i) {
     if (!Fits(hull, a + (b - a) * i / steps)) return false;
   }
   return true;
@@ -267,8 +272,9 @@ void Lookout::Flood(const HullSpace& hull, const Place& from, long stride) {
     float& reached = numbers_.At(map.CellOf(here));
     if (reached == kReached) continue;
     // Few of the ways between places are taken: so they are tested here.
-    if (at.from >= 0 && !Leads(hull, places_[static_cast<std::size_t>(at.from)].p_W, here))
+    if (at.from >= 0 && !FitsBetween(hull, places_[static_cast<std::size_t>(at.from)].p_W, here)) {
       continue;
+    }
     reached = kReached;
     const auto index = static_cast<int>(places_.size());
     places_.push_back({here, from.way + static_cast<double>(at.way), at.from});

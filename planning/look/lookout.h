@@ -105,6 +105,7 @@ class Lookout {
   };
 
   bool Fits(const HullSpace& hull, const Eigen::Vector3d& p) const;
+  bool FitsBetween(const HullSpace& hull, const Eigen::Vector3d& a, const Eigen::Vector3d& b) const;
   void Flood(const HullSpace& hull, const Place& from);
   void Flood(const HullSpace& hull, const Place& from, long stride);
   void BeginAt(const Eigen::Vector3d& from);

@@ -7,22 +7,20 @@ namespace {
 
 const Eigen::Vector3d kClimbAfterMiss(0.0, 0.0, 0.5);  // of a landing whose deck is gone [m]
 const Eigen::Vector3d kNoShift(0.0, 0.0, 0.0);
-constexpr double kLean = 0.05;       // a foot of a vehicle that leans hangs so much lower [m]
 constexpr double kTurn = 0.2;        // until a climb is flown [s] ...
 constexpr double kRises = 4.0;       // ... and what it ends sinking with [m/s^2]
 constexpr double kNearMiddle = 0.2;  // of a deck, where a contact is not put off [m]
 
 /// A climb that begins now touches the deck, too, and bounces off.
 bool TouchesAnyway(const FlightPair& committed, double t0, const HullSpace& hull) {
-  if (hull.pad == nullptr || !committed.Lands() ||
-      Fallback::LookAtLanding(committed, t0, hull) != Fallback::Landing::kHolds) {
-    return false;
-  }
+  if (hull.pad == nullptr || !committed.Lands()) return false;
   const FlatState now = committed.At(t0);
   const estimation::PadState pad = hull.pad->MeanAt(t0);
   const double sinks = pad.v_WP.z() - now.v_WB.z();
   const double feet = now.p_WB.z() - hull.foot_depth - pad.p_WP.z();
-  return sinks > 0.0 && sinks <= kSoftSink && feet - kLean < sinks * (kTurn + 0.5 * sinks / kRises);
+  const bool touches = sinks > 0.0 && sinks <= kSoftSink &&
+                       feet - kFootLowers < sinks * (kTurn + 0.5 * sinks / kRises);
+  return touches && Fallback::LookAtLanding(committed, t0, hull) == Fallback::Landing::kHolds;
 }
 
 }  // namespace

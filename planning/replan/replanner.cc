@@ -122,7 +122,7 @@ class Replanner::Impl {
   const ReplanResult& RefuseState(const ReplanInput& input, const char* wrong);
   void NoteAsked(double t_start);
   SplineState Start(const ReplanInput& input);
-  bool IsNearEnd(const UniformBspline& curve) const;
+  bool ArrivesSoon(double t_start) const;
   Attempt FirstAttempt(const ReplanInput& input, const SplineState& start, const FreeSpace& plain,
                        AttemptFacts* facts);
   AttemptRequest RequestFor(const ReplanInput& input, const SplineState& start,
@@ -369,10 +369,12 @@ const ReplanResult& Replanner::Impl::Rest(const ReplanInput& input, double climb
   return Finish(fallback_.Rest(FactsFor(input, start, hull), climb, &result_), input.t_start);
 }
 
-/// The curve ends about where plans to the pad are to end then.
-bool Replanner::Impl::IsNearEnd(const UniformBspline& curve) const {
-  const double t = curve.t_end();
-  return (EndStateAt(end_.pad(), end_.target(), t).state.p - curve.Position(t)).norm() < kNearEnd;
+/// The committed curve ends about where a landing begins to sink, sooner than a plan of the usual length would.
+bool Replanner::Impl::ArrivesSoon(double t_start) const {
+  const double t = next_.curve.t_end();
+  if (!end_.target().touches() || t - t_start >= options_.min_duration) return false;
+  const Eigen::Vector3d end_W = EndStateAt(end_.pad(), end_.target(), t).state.p;
+  return (end_W - next_.curve.Position(t)).norm() < kNearEnd;
 }
 
 /// The first attempt, and the facts that the ladder of attempts depends on. Out of reach: the fresh guess is longer
@@ -393,8 +395,6 @@ Attempt Replanner::Impl::FirstAttempt(const ReplanInput& input, const SplineStat
   // An arrival once promised is kept: a new guess at every step would postpone it for ever. An arrival that is soon
   // on the straight way need not be on a long way around. An end on the way goes on ahead.
   const double left = next_.curve.t_end() - input.t_start;
-  facts->arrives_soon =
-      end_.target().touches() && left < options_.min_duration && IsNearEnd(next_.curve);
   const bool on_plan = planned_before_ && !result_.from_odometry;
   const bool promised =
       on_plan && !end_.is_on_the_way() &&
@@ -444,7 +444,7 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
       return reason;
     // Unseen cells may soon be seen, and a contact that is near is not to be put off: as long as it can, the committed
     // curve goes on.
-    const bool waits = reason == ReplanReason::kUnobserved || facts.arrives_soon;
+    const bool waits = reason == ReplanReason::kUnobserved || ArrivesSoon(input.t_start);
     if (waits && attempt.number == 0 && on_plan && !facts.at_rest && !facts.lands_soon &&
         fallback_.GoesOn(FactsFor(input, start, hull), &result_)) {
       return reason;

@@ -220,7 +220,6 @@ TEST_F(Survey, OfManyPlacesThoseCountThatSeePastObstacles) {
   EXPECT_FALSE(look->cells.empty());
 }
 
-// Through a gap hardly wider than the hull, places on a coarse lattice are not connected.
 TEST_F(Survey, AStraightWayLeadsWhereTheWholeHullSweepsFreeCells) {
   map_.MarkFree(at_, 0.8);
   const auto leads = [&](double length) {
@@ -232,6 +231,7 @@ TEST_F(Survey, AStraightWayLeadsWhereTheWholeHullSweepsFreeCells) {
   EXPECT_TRUE(leads(1.0));
 }
 
+// Through a gap hardly wider than the hull, places on a coarse lattice are not connected.
 TEST_F(Survey, PlacesBehindAGapOnTheWayAreReached) {
   Wall(3.05, -13.0, -0.6);
   Wall(3.05, 0.75, 13.0);

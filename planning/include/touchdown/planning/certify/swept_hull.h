@@ -59,6 +59,9 @@ struct HullStart {
 /// What SweepHull adds to the grown hull for the way between two positions that it tests [m].
 inline constexpr double kSweepRoom = 0.01;
 
+/// A foot of a vehicle that leans by 20 degrees hangs so much lower [m].
+inline constexpr double kFootLowers = 0.05;
+
 /// What the landing rule allows at contact, relative to the deck [m/s]. A landing that is to be committed may use
 /// this share of it.
 inline constexpr double kSoftSink = 0.5;

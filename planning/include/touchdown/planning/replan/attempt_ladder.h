@@ -24,8 +24,6 @@ struct Outcome {
 /// Further inputs of the rules, the same for all attempts of a step.
 struct AttemptFacts {
   bool lands_soon = false;  ///< the committed plan is about to touch the deck, ...
-  bool arrives_soon =
-      false;  ///< the committed curve ends where a landing begins to sink, before a plan of the usual length
   bool lands_well = false;  ///< ... and holds: no later one is needed
   bool at_rest = false;
   ArrivalMode arrival = ArrivalMode::kFixed;  ///< that the options ask for
