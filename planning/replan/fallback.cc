@@ -32,9 +32,10 @@ bool Fallback::NoTimeToBrake(const SplineState& start, const FreeSpace& space) {
   return std::isfinite(FirstBlockedTime(pair_.stop, 0.0, space));
 }
 
-bool Fallback::AtRest(const FlightPair& committed, double t0) {
+bool Fallback::AtRest(const FlightPair& committed, double t0, bool planned) {
   const FlatState now = committed.At(t0);
-  const UniformBspline& last = committed.Last();
+  const bool leads_on = planned && t0 < committed.t_stop;
+  const UniformBspline& last = leads_on ? committed.curve : committed.Last();
   const SplineState end = last.AtKnot(last.segments());
   return now.v_WB.norm() <= kAtRest && end.v.norm() <= 1e-6 && (end.p - now.p_WB).norm() <= kAtRest;
 }
@@ -110,9 +111,9 @@ bool Fallback::Escapes(double t0, const SplineState& start, const HullSpace& hul
 
 void Fallback::FlyStop(const FlightPair& committed, double t0, const HullSpace& hull,
                        ReplanResult* result) {
-  result->status = committed.Lands()       ? ReplanStatus::kKept
-                   : AtRest(committed, t0) ? ReplanStatus::kHolding
-                                           : ReplanStatus::kBraking;
+  result->status = committed.Lands()              ? ReplanStatus::kKept
+                   : AtRest(committed, t0, false) ? ReplanStatus::kHolding
+                                                  : ReplanStatus::kBraking;
   result->pair() = committed;
   if (t0 >= committed.t_stop) result->curve = committed.stop;
   Certificate& certificate = result->certificate = {};

@@ -49,7 +49,7 @@ Fallen FallbackLadder::StepDown(const FallbackFacts& facts, ReplanResult* result
     Fallback::FlyStop(committed, t0, hull, result);
     return {.commits = false, .on_plan = facts.planned};
   }
-  const bool at_rest = !result->from_odometry && Fallback::AtRest(committed, t0);
+  const bool at_rest = !result->from_odometry && Fallback::AtRest(committed, t0, facts.planned);
   const bool on_plan = facts.planned && !result->from_odometry && !at_rest;
   if (on_plan && GoesOn(facts, result)) {
     result->status = ReplanStatus::kKept;
@@ -93,7 +93,7 @@ Fallen FallbackLadder::Rest(const FallbackFacts& facts, double climb, ReplanResu
   if (!under_way) {
     climb_.reset();
     const bool at_rest = facts.committed->proven && !result->from_odometry &&
-                         Fallback::AtRest(*facts.committed, facts.t0);
+                         Fallback::AtRest(*facts.committed, facts.t0, false);
     // Below a roof a part of the climb takes the vehicle out of the pad's way, too.
     for (const double rise : {climb, 0.5 * climb, 0.25 * climb, 0.0}) {
       if (at_rest && rise == 0.0) break;

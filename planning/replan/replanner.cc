@@ -388,7 +388,8 @@ Attempt Replanner::Impl::FirstAttempt(const ReplanInput& input, const SplineStat
   facts->fresh = guess(1.0);
   facts->lands_soon = !result_.from_odometry &&
                       LandsSoon(next_, input.t_start, end_.target(), HullIn(plain, DeckOf(input)));
-  facts->at_rest = !result_.from_odometry && Fallback::AtRest(next_, input.t_start);
+  facts->at_rest =
+      !result_.from_odometry && Fallback::AtRest(next_, input.t_start, planned_before_);
   facts->arrival = options_.arrival;
   facts->min_duration = options_.min_duration;
   facts->max_duration = options_.max_duration;

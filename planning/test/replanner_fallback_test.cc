@@ -75,6 +75,27 @@ TEST(ReplannerFallback, GoesStraightToWhereItLooksFrom) {
   EXPECT_LE((replanner.Reference(3.0).p_WB - there).norm(), 0.05) << "a rest is not moved by less";
 }
 
+TEST(ReplannerFallback, APlanThatHasHardlyBegunIsFlownOn) {
+  const OccupancyMap map = ObservedMap();
+  const Eigen::Vector3d start(-4.0, 0.0, 1.5);
+  const ArcPad pad({5.0, 0.0, 0.3}, 0.0, 0.0, 0.0);
+  ReplannerOptions options = Options(ArrivalMode::kFixed);
+  Replanner plans(options, solvers::StandardBackends());
+  plans.CommitHover(start, 0.0);
+  ASSERT_EQ(plans.Replan(Input(start, pad, 0.0), map).status, ReplanStatus::kPlanned);
+  options.max_work = 1;  // later steps find none
+  Replanner replanner(options, solvers::StandardBackends());
+  replanner.Restore(plans.state());
+  for (int step = 1; step < 20; ++step) {
+    const double t = 0.1 * step;
+    const FlatState at = replanner.Reference(t);
+    ReplanInput input = Input(at.p_WB, pad, t);
+    input.vehicle.v_WB = at.v_WB;
+    EXPECT_EQ(replanner.Replan(input, map).status, ReplanStatus::kKept) << t;
+  }
+  EXPECT_GT((replanner.Reference(2.0).p_WB - start).norm(), 1.0);
+}
+
 TEST(ReplannerFallback, APlaceToLookFromIsChecked) {
   const OccupancyMap map = ObservedMap();
   const Eigen::Vector3d start(-4.0, 0.0, 1.5);
