@@ -11,16 +11,19 @@ constexpr double kTurn = 0.2;        // until a climb is flown [s] ...
 constexpr double kRises = 4.0;       // ... and what it ends sinking with [m/s^2]
 constexpr double kNearMiddle = 0.2;  // of a deck, where a contact is not put off [m]
 
-/// A climb that begins now touches the deck, too, and bounces off.
-bool TouchesAnyway(const FlightPair& committed, double t0, const HullSpace& hull) {
+/// A climb that begins now touches the deck, too, and bounces off. A vehicle that a gust drives off it does not.
+bool TouchesAnyway(const FallbackFacts& facts) {
+  const FlightPair& committed = *facts.committed;
+  const HullSpace& hull = *facts.hull;
   if (hull.pad == nullptr || !committed.Lands()) return false;
-  const FlatState now = committed.At(t0);
-  const estimation::PadState pad = hull.pad->MeanAt(t0);
+  const FlatState now = committed.At(facts.t0);
+  const estimation::PadState pad = hull.pad->MeanAt(facts.t0);
+  const double drifts = (facts.v_WB - pad.v_WP).head<2>().norm();
   const double sinks = pad.v_WP.z() - now.v_WB.z();
   const double feet = now.p_WB.z() - hull.foot_depth - pad.p_WP.z();
-  const bool touches = sinks > 0.0 && sinks <= kSoftSink &&
+  const bool touches = drifts <= kSoftDrift && sinks > 0.0 && sinks <= kSoftSink &&
                        feet - kFootLowers < sinks * (kTurn + 0.5 * sinks / kRises);
-  return touches && Fallback::LookAtLanding(committed, t0, hull) == Fallback::Landing::kHolds;
+  return touches && Fallback::LookAtLanding(committed, facts.t0, hull) == Fallback::Landing::kHolds;
 }
 
 }  // namespace
@@ -85,7 +88,7 @@ Fallen FallbackLadder::StepDown(const FallbackFacts& facts, ReplanResult* result
 }
 
 Fallen FallbackLadder::Rest(const FallbackFacts& facts, double climb, ReplanResult* result) {
-  if (!result->from_odometry && TouchesAnyway(*facts.committed, facts.t0, *facts.hull)) {
+  if (!result->from_odometry && TouchesAnyway(facts)) {
     Fallback::FlyStop(*facts.committed, facts.t0, *facts.hull, result);
     return {.commits = false};
   }

@@ -19,6 +19,7 @@ struct FallbackFacts {
   const FlightPair* committed = nullptr;
   bool planned = false;  ///< the committed curve is a plan to the pad
   SplineState start;
+  Eigen::Vector3d v_WB{0.0, 0.0, 0.0};  ///< the vehicle's own, on the curve or off it [m/s]
   double t0 = 0.0;        ///< of the start [s]
   double reaction = 0.0;  ///< after which a newer stop begins [s]
   const HullSpace* hull = nullptr;

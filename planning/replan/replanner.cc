@@ -327,6 +327,7 @@ FallbackFacts Replanner::Impl::FactsFor(const ReplanInput& input, const SplineSt
   FallbackFacts facts;
   facts.committed = &next_;
   facts.start = start;
+  facts.v_WB = input.vehicle.v_WB;
   facts.t0 = input.t_start;
   facts.reaction = reaction_;
   facts.hull = &hull;

@@ -258,8 +258,13 @@ TEST_F(LastStretch, WhoWillTouchAnywayDoesNotClimb) {
   const FlatState at = replanner_->Reference(t_);
   ReplanInput input = Input(at.p_WB, pad_, t_);
   input.vehicle.v_WB = at.v_WB;
+  const ReplannerState before = replanner_->state();
   EXPECT_EQ(replanner_->Rest(input, 1.0, map_).status, ReplanStatus::kKept);
   EXPECT_TRUE(replanner_->state().next.Lands());
+  // In a gust it would touch the deck too fast.
+  input.vehicle.v_WB = pad_.At(t_).v_WP + Eigen::Vector3d(0.7, 0.0, -0.2);
+  replanner_->Restore(before);
+  EXPECT_EQ(replanner_->Rest(input, 1.0, map_).status, ReplanStatus::kClimbing);
 }
 
 TEST_F(LastStretch, ContactThatNeverComesEndsIt) {
