@@ -100,7 +100,7 @@ PairProof ProvePair(double t_from, double t_handover, PairEnd ends, const Limits
 
 bool TouchesSoftly(const UniformBspline& curve, double t, double share, const HullSpace& hull) {
   const Eigen::Vector3d v = curve.EvaluateOnward(t).v_WB - hull.pad->MeanAt(t).v_WP;
-  return -v.z() <= share * kSoftSink && v.head<2>().norm() <= share * kSoftDrift;
+  return IsSoft(v, share);
 }
 
 double ContactTime(const UniformBspline& curve, double t_from, const HullSpace& hull) {

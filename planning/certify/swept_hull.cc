@@ -286,8 +286,7 @@ bool AboveDeck(const HullSpace& hull, const Eigen::Vector3d& p, double t, const 
   const estimation::PadState pad = hull.pad->MeanAt(t);
   const double deck_feet = pad.p_WP.z() + hull.foot_depth, above = p.z() - deck_feet;
   const Eigen::Vector3d v_PB = v - pad.v_WP;
-  const bool softly =
-      -v_PB.z() <= kLandingRoom * kSoftSink && v_PB.head<2>().norm() <= kLandingRoom * kSoftDrift;
+  const bool softly = IsSoft(v_PB, kLandingRoom);
   if (above >= kFootLowers || (above >= -below && (softly || start.z() < deck_feet + kFootLowers)))
     return true;
   const PadOutline deck = OutlineOf(hull.pad->At(t), hull.deck_half_size);

@@ -43,7 +43,8 @@ class Fallback {
   /// The start itself leads into an obstacle: arriving later does not change that.
   bool NoTimeToBrake(const SplineState& start, const FreeSpace& space);
 
-  /// The vehicle is at rest at t0 [s], and stays at rest on the committed pair. A plan that has hardly begun leads on.
+  /// The vehicle is at rest at t0 [s], and stays at rest on the committed pair: where that is planned, on its curve,
+  /// which leads on when it has hardly begun.
   static bool AtRest(const FlightPair& committed, double t0, bool planned);
 
   /// The state of a pair that was to end in contact.

@@ -18,10 +18,10 @@ bool TouchesAnyway(const FallbackFacts& facts) {
   if (hull.pad == nullptr || !committed.Lands()) return false;
   const FlatState now = committed.At(facts.t0);
   const estimation::PadState pad = hull.pad->MeanAt(facts.t0);
-  const double drifts = (facts.v_WB - pad.v_WP).head<2>().norm();
   const double sinks = pad.v_WP.z() - now.v_WB.z();
+  const Eigen::Vector3d v_PB(facts.v_WB.x() - pad.v_WP.x(), facts.v_WB.y() - pad.v_WP.y(), -sinks);
   const double feet = now.p_WB.z() - hull.foot_depth - pad.p_WP.z();
-  const bool touches = drifts <= kSoftDrift && sinks > 0.0 && sinks <= kSoftSink &&
+  const bool touches = sinks > 0.0 && IsSoft(v_PB, 1.0) &&
                        feet - kFootLowers < sinks * (kTurn + 0.5 * sinks / kRises);
   return touches && Fallback::LookAtLanding(committed, facts.t0, hull) == Fallback::Landing::kHolds;
 }

@@ -68,6 +68,11 @@ inline constexpr double kSoftSink = 0.5;
 inline constexpr double kSoftDrift = 0.6;
 inline constexpr double kLandingRoom = 0.9;
 
+/// Whether this velocity relative to the deck keeps to `share` of it [m/s]. Does not allocate.
+inline bool IsSoft(const Eigen::Vector3d& v_PB, double share) {
+  return -v_PB.z() <= share * kSoftSink && v_PB.head<2>().norm() <= share * kSoftDrift;
+}
+
 /// At any time, and at none: when the hull may touch the deck [s].
 inline constexpr double kAnyTime = -std::numeric_limits<double>::infinity();
 inline constexpr double kNever = std::numeric_limits<double>::infinity();
