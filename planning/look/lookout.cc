@@ -20,10 +20,10 @@ constexpr double kBetweenTested =
 constexpr double kSoon = 1.5;           // cells so far along it are worth a third of the first [m]
 constexpr double kFar = 4.0 * kSoon;    // beyond what was seen: 2 % of the first [m]
 constexpr std::size_t kMostNeeded = 600;  // cells
-constexpr std::size_t kUsualPath = 2048, kUsualNeeded = 40000, kUsualNumbers = 200000,
+constexpr std::size_t kUsualPath = 2048, kUsualNeeded = 40000, kUsualMarks = 200000,
                       kUsualCameras = 8;
-constexpr double kApartAt[] = {0.8, 0.4, 0.2, 0.1};  // places, the first that finds many [m]
-constexpr std::size_t kManyPlaces = 500, kMostPlaces = 1000, kMostTried = 500;
+constexpr double kApartAt[] = {1.2, 0.6, 0.3, 0.1};  // places, the first that finds many [m]
+constexpr std::size_t kMostPlaces = 250;
 constexpr std::size_t kSample = 200;  // needed cells, by which places are compared
 constexpr double kFlies = 1.0, kTurns = 1.2,
                  kStays = 0.6;                      // [m/s], [rad/s], [s]: what a look takes
@@ -71,7 +71,7 @@ Lookout::Lookout(const PathCost& cost)
   for (GuidePath* path : {&path_, &back_}) path->reserve(kUsualPath);
   needed_.reserve(kUsualNeeded);
   places_.reserve(2 * kMostPlaces);
-  candidates_.reserve(2 * kMostTried);
+  candidates_.reserve(2 * kMostPlaces);
   queue_.reserve(27 * kMostPlaces);
   sights_.reserve(kUsualCameras);
   look_.cells.reserve(kMostNeeded + 1);
@@ -82,7 +82,7 @@ Lookout::Lookout(const PathCost& cost)
 void Lookout::Prepare(const FreeSpace& space) {
   const OccupancyMap& map = *space.map;
   search_.Reserve(map);
-  numbers_.Begin(map);
+  marks_.Begin(map);
   far_.emplace(map, space.floor);
   far_search_.Reserve(far_->map());
 }
@@ -92,24 +92,24 @@ void Lookout::Keep(const FreeSpace& space) {
   far_->Keep(*space.map);
 }
 
-void Lookout::CellNumbers::Begin(const OccupancyMap& map) {
-  if (size_ != map.size() || numbers_.empty()) {
+void Lookout::CellMarks::Begin(const OccupancyMap& map) {
+  if (size_ != map.size() || marks_.empty()) {
     size_ = map.size();
-    numbers_.assign(static_cast<std::size_t>(size_.prod()), kNone);
-    set_.reserve(kUsualNumbers);
+    marks_.assign(static_cast<std::size_t>(size_.prod()), kNone);
+    set_.reserve(kUsualMarks);
     set_.clear();
   }
-  for (const std::uint32_t at : set_) numbers_[at] = kNone;
+  for (const std::uint32_t at : set_) marks_[at] = kNone;
   set_.clear();
   origin_ = map.origin();
 }
 
 /// It will be set. @pre the cell is in the window
-float& Lookout::CellNumbers::At(const CellIndex& cell) {
+Lookout::Mark& Lookout::CellMarks::At(const CellIndex& cell) {
   const CellIndex at = cell - origin_;
   const auto i = static_cast<std::uint32_t>((at.z() * size_.y() + at.y()) * size_.x() + at.x());
-  if (numbers_[i] == kNone) set_.push_back(i);
-  return numbers_[i];
+  if (marks_[i] == kNone) set_.push_back(i);
+  return marks_[i];
 }
 
 double Lookout::Length(const FreeSpace& space, const Eigen::Vector3d& from,
@@ -167,13 +167,13 @@ void Lookout::BeginAt(const Eigen::Vector3d& from) {
 bool Lookout::NoteNeeded(const HullSpace& hull, const Eigen::Vector3d& from) {
   const OccupancyMap& map = *hull.space->map;
   needed_.clear();
-  numbers_.Begin(map);
+  marks_.Begin(map);
   double along = 0.0;
   const auto note = [&](const CellIndex& cell) {
     if (!map.InWindow(cell) || map.IsOccupied(cell)) return true;
-    float& noted = numbers_.At(cell);  // it is touched at several places
-    if (noted == CellNumbers::kNone) needed_.push_back({cell, std::exp(-along / kSoon)});
-    noted = 0.0f;
+    Mark& mark = marks_.At(cell);  // it is touched at several places
+    if (mark == kNone) needed_.push_back({cell, std::exp(-along / kSoon)});
+    mark = kReached;
     return true;
   };
   ForEachUnseen(hull, from, note);
@@ -218,17 +218,6 @@ bool Lookout::NoteDoubted(const FreeSpace& space, const Eigen::Vector3d& goal) {
   return !needed_.empty();
 }
 
-/// Adds the places to which cells lead that were seen free, the nearest first: few far apart in the open, more where it
-/// is narrow.
-void Lookout::Flood(const HullSpace& hull, const Place& from) {
-  const std::size_t before = places_.size();
-  for (const double apart : kApartAt) {
-    places_.resize(before);
-    Flood(hull, from, std::max(1L, std::lround(apart / hull.space->map->resolution())));
-    if (places_.size() - before >= kManyPlaces) return;
-  }
-}
-
 /// Beside the vehicle cells may be unseen that its camera passed.
 bool Lookout::Fits(const HullSpace& hull, const Eigen::Vector3d& p) const {
   const OccupancyMap& map = *hull.space->map;
@@ -252,44 +241,67 @@ bool Lookout::FitsBetween(const HullSpace& hull, const Eigen::Vector3d& a,
   return true;
 }
 
-void Lookout::Flood(const HullSpace& hull, const Place& from, long stride) {
+/// Adds the places to which cells lead that were seen free, the nearest first: few far apart in the open, more where it
+/// is narrow.
+void Lookout::Flood(const HullSpace& hull, const Place& from) {
+  const double side = hull.space->map->resolution();
+  marks_.Begin(*hull.space->map);
+  const std::size_t before = places_.size();
+  Mark reached = kReached;
+  for (const double apart : kApartAt) {
+    places_.resize(before);
+    Flood(hull, from, std::max(1, static_cast<int>(std::lround(apart / side))), reached++);
+    if (places_.size() - before == kMostPlaces) return;
+  }
+}
+
+/// A hull fits whose centre is so many cells beyond `from`. What is found out stands for the next strides.
+bool Lookout::FitsAt(const HullSpace& hull, const Eigen::Vector3d& from, const CellIndex& cells) {
   const OccupancyMap& map = *hull.space->map;
-  const double side = static_cast<double>(stride) * map.resolution();
+  const CellIndex cell = map.CellOf(from) + cells;
+  if (!map.InWindow(cell)) return false;
+  Mark& mark = marks_.At(cell);
+  if (mark == kNone) {
+    mark = Fits(hull, from + map.resolution() * cells.cast<double>()) ? kFits : kClosed;
+  }
+  return mark != kClosed;
+}
+
+void Lookout::Flood(const HullSpace& hull, const Place& from, int stride, Mark reached) {
+  const double side = hull.space->map->resolution();
+  const CellIndex origin = hull.space->map->CellOf(from.p_W);
   const std::size_t most = places_.size() + kMostPlaces;
-  const auto place = [&](const CellIndex& node) -> Eigen::Vector3d {
-    return from.p_W + side * node.cast<double>();
+  const auto step_of = [&](int i) -> CellIndex {
+    return stride * CellIndex(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
   };
-  constexpr float kFits = 0.0f, kClosed = 1.0f, kReached = 2.0f;  // of a place
-  const auto farther = [](const Entry& a, const Entry& b) { return a.way > b.way; };
-  numbers_.Begin(map);
+  const auto later = [](const Entry& a, const Entry& b) {
+    return a.way != b.way ? a.way > b.way : a.number > b.number;
+  };
+  const auto add = [&](const CellIndex& node, double way, int before) {
+    marks_.At(origin + node) = reached;
+    const auto place = static_cast<int>(places_.size());
+    places_.push_back({from.p_W + side * node.cast<double>(), way, before});
+    for (int i = 0; i < 27; ++i) {
+      const CellIndex next = node + step_of(i);
+      if (!FitsAt(hull, from.p_W, next) || marks_.At(origin + next) == reached) continue;
+      queue_.push_back({way + side * step_of(i).cast<double>().norm(), next, 27 * place + i});
+      std::push_heap(queue_.begin(), queue_.end(), later);
+    }
+  };
   queue_.clear();
-  queue_.push_back({0.0f, CellIndex::Zero(), -1});
+  add(CellIndex::Zero(), from.way, -1);
   while (!queue_.empty() && places_.size() < most) {
-    std::pop_heap(queue_.begin(), queue_.end(), farther);
+    std::pop_heap(queue_.begin(), queue_.end(), later);
     const Entry at = queue_.back();
     queue_.pop_back();
-    const Eigen::Vector3d here = place(at.node);
-    float& reached = numbers_.At(map.CellOf(here));
-    if (reached == kReached) continue;
+    if (marks_.At(origin + at.node) == reached) continue;
     // Few of the ways between places are taken: so they are tested here.
-    if (at.from >= 0 && !FitsBetween(hull, places_[static_cast<std::size_t>(at.from)].p_W, here)) {
-      continue;
-    }
-    reached = kReached;
-    const auto index = static_cast<int>(places_.size());
-    places_.push_back({here, from.way + static_cast<double>(at.way), at.from});
-    for (int i = 0; i < 27; ++i) {
-      const CellIndex step(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
-      const Eigen::Vector3d there = place(at.node + step);
-      const CellIndex cell = map.CellOf(there);
-      if (!map.InWindow(cell)) continue;
-      float& known = numbers_.At(cell);
-      if (known == CellNumbers::kNone) known = Fits(hull, there) ? kFits : kClosed;
-      if (known != kFits) continue;
-      const double length = side * step.cast<double>().norm();
-      queue_.push_back({at.way + static_cast<float>(length), at.node + step, index});
-      std::push_heap(queue_.begin(), queue_.end(), farther);
-    }
+    const CellIndex step = step_of(at.number % 27);
+    const double length = side * step.cast<double>().norm();
+    const int tests = static_cast<int>(std::ceil(length / kBetweenTested));
+    int passed = 1;
+    while (passed < tests && FitsAt(hull, from.p_W, at.node - step * passed / tests)) ++passed;
+    if (passed == tests) add(at.node, at.way, at.number / 27);
   }
 }
 
@@ -355,12 +367,12 @@ void Lookout::FindCandidates(const HullSpace& hull, const std::vector<LookCamera
   const double yaw_now = estimation::Yaw(vehicle.q_WB);
   const double lowest =
       hull.pad != nullptr ? LowestRest(vehicle.t, hull) : -std::numeric_limits<double>::infinity();
-  const std::size_t every = 1 + places_.size() / kMostTried;
-  for (std::size_t i = 0; i < places_.size(); i += every) {
+  for (std::size_t i = 0; i < places_.size(); ++i) {
     const Place& place = places_[i];
     const Eigen::Vector3d to = middle - place.p_W;
     const Viewpoint from = {place.p_W, std::atan2(to.y(), to.x())};
-    if (place.p_W.z() < lowest || IsStruck(from, struck)) continue;
+    const bool in_pads_way = hull.space->OverPad(place.p_W) && place.p_W.z() < lowest;
+    if (in_pads_way || IsStruck(from, struck)) continue;
     const double turn = std::abs(estimation::WrapAngle(from.yaw - yaw_now));
     const double time = std::max(place.way / kFlies, turn / kTurns) + kStays;
     double worth = 0.0;
@@ -372,7 +384,9 @@ void Lookout::FindCandidates(const HullSpace& hull, const std::vector<LookCamera
     }
     if (worth > 0.0) candidates_.push_back({worth / time, from, static_cast<int>(i), time});
   }
-  const auto better = [](const Candidate& a, const Candidate& b) { return a.worth > b.worth; };
+  const auto better = [](const Candidate& a, const Candidate& b) {
+    return a.worth != b.worth ? a.worth > b.worth : a.place < b.place;
+  };
   std::sort(candidates_.begin(), candidates_.end(), better);
 }
 

@@ -107,7 +107,6 @@ class Lookout {
   bool Fits(const HullSpace& hull, const Eigen::Vector3d& p) const;
   bool FitsBetween(const HullSpace& hull, const Eigen::Vector3d& a, const Eigen::Vector3d& b) const;
   void Flood(const HullSpace& hull, const Place& from);
-  void Flood(const HullSpace& hull, const Place& from, long stride);
   void BeginAt(const Eigen::Vector3d& from);
   const Look* LookFrom(const Viewpoint& from, int place);
 
@@ -117,23 +116,27 @@ class Lookout {
   double Trace(const OccupancyMap& map, const std::vector<LookCamera>& cameras,
                const Candidate& candidate, const Eigen::Vector3d& pull_W, std::size_t apart);
 
-  /// A number for each cell of the window, of which few are set.
-  class CellNumbers {
+  using Mark = std::uint8_t;
+  static constexpr Mark kNone = 0, kFits = 1, kClosed = 2,
+                        kReached = 3;  ///< or more: in a later stride
+  /// A mark for each cell of the window, of which few are set.
+  class CellMarks {
    public:
-    static constexpr float kNone = std::numeric_limits<float>::infinity();
     void Begin(const OccupancyMap& map);
-    float& At(const CellIndex& cell);
+    Mark& At(const CellIndex& cell);
 
    private:
     CellIndex origin_, size_;
-    std::vector<float> numbers_;
+    std::vector<Mark> marks_;
     std::vector<std::uint32_t> set_;
   };
   struct Entry {
-    float way;
-    CellIndex node;
-    int from;  // place
+    double way;
+    CellIndex node;  ///< cells beyond where the flood begins
+    int number;      ///< as they came: 27 times the place before, and the step from there
   };
+  bool FitsAt(const HullSpace& hull, const Eigen::Vector3d& from, const CellIndex& cells);
+  void Flood(const HullSpace& hull, const Place& from, int stride, Mark reached);
 
   PathCost cost_;
   SpanSearch search_;
@@ -141,7 +144,7 @@ class Lookout {
   std::optional<FarMemory> far_;
   SearchStatus status_ = SearchStatus::kNoPath;  // of the last Length, ...
   SpanSearch::End end_ = SpanSearch::End::kGoal;  // ... and of its way
-  CellNumbers numbers_;
+  CellMarks marks_;
   std::vector<Entry> queue_;
   GuidePath path_, back_;
   std::vector<Needed> needed_;
