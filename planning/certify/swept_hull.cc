@@ -315,7 +315,7 @@ Sweep SweepHull(const UniformBspline& curve, double t_from, double t_to, const H
   // A hull thinner than kSweepRoom counts as half of it: two such balls contain as much at least.
   const double radius = std::max(hull.radius(), 0.5 * kSweepRoom);
   Stretch stretch(radius);
-  Eigen::Vector3d before = start.p_W;
+  Eigen::Vector3d before = path.At(t_from), v = curve.EvaluateOnward(t_from).v_WB;
   double t_before = t_from;
   const double below = std::isfinite(t_contact) ? kFaceSlack : 0.0;
   const auto holds = [&](const Eigen::Vector3d& p, double t) {
@@ -331,7 +331,6 @@ Sweep SweepHull(const UniformBspline& curve, double t_from, double t_to, const H
     const Eigen::Vector3d p = path.At(t);
     const bool may_touch = t >= t_contact;
     if (!LevelKept(*hull.space, p, start.p_W, may_touch)) return sweep;
-    Eigen::Vector3d v = Eigen::Vector3d::Zero();
     if (t > t_before) v = (p - before) / (t - t_before);
     if (!may_touch && !AboveDeck(hull, p, t, v, below, start.p_W)) return sweep;
     if (i == 0) stretch.Begin(p);

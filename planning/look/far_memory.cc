@@ -32,7 +32,7 @@ void FarMemory::Keep(const OccupancyMap& map) {
   CellIndex origin = (map.origin() + map.size() / 2) / apart_ - far_.size() / 2;
   origin.z() = far_.origin().z();
   if ((origin - far_.origin()).cwiseAbs().maxCoeff() >= kMoves) far_.MoveWindow(origin);
-  const int half = apart_ / 2, in_word = 64 / apart_;
+  const int half = apart_ / 2, in_word = std::max(1, 64 / apart_);
   const auto first_of = [&](int cell) {  // whose middle is there or beyond
     return (cell - half + (cell > half ? apart_ - 1 : 0)) / apart_;
   };

@@ -13,7 +13,7 @@
 namespace touchdown::planning {
 namespace {
 
-constexpr int kMostSpans = 150000;      // that a search expands: more than a window mostly has
+constexpr int kAllSpans = std::numeric_limits<int>::max();  // that a search expands
 constexpr double kBetweenBalls = 0.15;  // along the way [m]
 constexpr double kBetweenTested =
     0.3;  // balls: they leave out 3 cm of what the hull sweeps between them [m]
@@ -114,41 +114,48 @@ Lookout::Mark& Lookout::CellMarks::At(const CellIndex& cell) {
 
 double Lookout::Length(const FreeSpace& space, const Eigen::Vector3d& from,
                        const Eigen::Vector3d& goal) {
-  status_ = search_.SearchOut(space, from, goal, kMostSpans, &path_);
+  status_ = search_.SearchOut(space, from, goal, kAllSpans, &path_);
   end_ = search_.end();
   return status_ == SearchStatus::kFound ? search_.cost() : std::numeric_limits<double>::infinity();
 }
 
-double Lookout::FarLength(const FreeSpace& space, const Eigen::Vector3d& from,
+void Lookout::TakePath(const FreeSpace& space, const Eigen::Vector3d& from,
+                       const Eigen::Vector3d& goal, bool wide, bool far) {
+  search_.set_cost({cost_.vertical, wide ? cost_.tight : 1.0});
+  if (!far || !TakeFarPath(space, from, goal)) {
+    search_.SearchOut(space, from, goal, kAllSpans, &path_);
+  }
+  search_.set_cost({cost_.vertical, 1.0});
+}
+
+bool Lookout::TakeFarPath(const FreeSpace& space, const Eigen::Vector3d& from,
                           const Eigen::Vector3d& goal) {
   FreeSpace far = space;
   far.map = &far_->map();
-  const SearchStatus status = far_search_.SearchOut(far, from, goal, kMostSpans, &back_);
+  const SearchStatus status = far_search_.SearchOut(far, from, goal, kAllSpans, &back_);
   // It may have missed a passage: then what the window holds must do.
   const bool missed =
       far_search_.end() != SpanSearch::End::kGoal && far.map->InWindow(far.map->CellOf(goal));
-  if (status != SearchStatus::kFound || missed) return Length(space, from, goal);
+  if (status != SearchStatus::kFound || missed) return false;
   // Within the window the way is as it is there, to where the other leaves it.
   const OccupancyMap& map = *space.map;
   const auto last = std::find_if(back_.begin(), back_.end(), [&](const Eigen::Vector3d& p) {
     return !map.InWindow(map.CellOf(p));
   });
-  if (last == back_.begin()) return Length(space, from, goal);
-  status_ = search_.Search(space, from, *(last - 1), kMostSpans, &path_);
-  if (status_ != SearchStatus::kFound) return Length(space, from, goal);
-  end_ = last == back_.end() ? SpanSearch::End::kGoal : SpanSearch::End::kSide;
-  return far_search_.cost();
+  return last != back_.begin() &&
+         search_.Search(space, from, *(last - 1), kAllSpans, &path_) == SearchStatus::kFound;
 }
 
 bool Lookout::Closed(const FreeSpace& space, const Eigen::Vector3d& from,
                      const Eigen::Vector3d& goal) {
-  if (status_ == SearchStatus::kFound && end_ == SpanSearch::End::kGoal) return false;
+  const bool found = status_ == SearchStatus::kFound;  // a way out, at least
+  if (found && end_ == SpanSearch::End::kGoal) return false;
   const auto is_enclosed = [&](const Eigen::Vector3d& p) {
     if (!space.map->InWindow(space.map->CellOf(p))) return false;
-    const SearchStatus status = search_.Escape(space, p, kMostSpans);
+    const SearchStatus status = search_.Escape(space, p, kAllSpans);
     return status == SearchStatus::kNoPath || status == SearchStatus::kEndsBlocked;
   };
-  return is_enclosed(from) || is_enclosed(goal);
+  return (!found && is_enclosed(from)) || is_enclosed(goal);
 }
 
 double Lookout::Least(const OccupancyMap& map, const Eigen::Vector3d& from,
@@ -219,24 +226,25 @@ bool Lookout::NoteDoubted(const FreeSpace& space, const Eigen::Vector3d& goal) {
 }
 
 /// Beside the vehicle cells may be unseen that its camera passed.
-bool Lookout::Fits(const HullSpace& hull, const Eigen::Vector3d& p) const {
+bool Lookout::Fits(const HullSpace& hull, const Eigen::Vector3d& p,
+                   const Eigen::Vector3d& start) const {
   const OccupancyMap& map = *hull.space->map;
   return !hull.space->Blocked(p) && ForEachUnseen(hull, p, [&](const CellIndex& cell) {
     return !map.IsOccupied(cell) &&
-           WasThere(cell, begin_.p_W, p, hull.radius() + kSweepRoom, map.resolution());
+           WasThere(cell, start, p, hull.radius() + kSweepRoom, map.resolution());
   });
 }
 
 bool Lookout::Leads(const HullSpace& hull, const Eigen::Vector3d& a,
                     const Eigen::Vector3d& b) const {
-  return FitsBetween(hull, a, b) && Fits(hull, b);
+  return FitsBetween(hull, a, b) && Fits(hull, b, a);
 }
 
 bool Lookout::FitsBetween(const HullSpace& hull, const Eigen::Vector3d& a,
                           const Eigen::Vector3d& b) const {
   const int steps = static_cast<int>(std::ceil((b - a).norm() / kBetweenTested));
   for (int i = 1; i < steps; ++i) {
-    if (!Fits(hull, a + (b - a) * i / steps)) return false;
+    if (!Fits(hull, a + (b - a) * i / steps, a)) return false;
   }
   return true;
 }
@@ -262,7 +270,8 @@ bool Lookout::FitsAt(const HullSpace& hull, const Eigen::Vector3d& from, const C
   if (!map.InWindow(cell)) return false;
   Mark& mark = marks_.At(cell);
   if (mark == kNone) {
-    mark = Fits(hull, from + map.resolution() * cells.cast<double>()) ? kFits : kClosed;
+    const Eigen::Vector3d p = from + map.resolution() * cells.cast<double>();
+    mark = Fits(hull, p, begin_.p_W) ? kFits : kClosed;
   }
   return mark != kClosed;
 }
@@ -311,6 +320,7 @@ const Look* Lookout::LookFrom(const Viewpoint& from, int place) {
   look_.from = from;
   look_.way = place < 0 ? seen_until_.way : at(place).way;
   look_.cells.clear();
+  look_.camera = 0;
   GuidePath& way_W = look_.way_W;
   way_W.clear();
   for (; place >= 0; place = at(place).from) way_W.push_back(at(place).p_W);
@@ -429,6 +439,13 @@ const Look* Lookout::Choose(const HullSpace& hull, const std::vector<LookCamera>
   Trace(map, cameras, *best, pull_W, 1);
   LookFrom(best->from, best->place);
   look_.cells = seen_;
+  const auto held = [&](const Sight& sight) {
+    return std::count_if(seen_.begin(), seen_.end(),
+                         [&](const CellIndex& cell) { return sight.Holds(map.CentreOf(cell)); });
+  };
+  const auto fewer = [&](const Sight& a, const Sight& b) { return held(a) < held(b); };
+  const auto sight = std::max_element(sights_.begin(), sights_.end(), fewer);
+  look_.camera = static_cast<std::size_t>(sight - sights_.begin());
   return &look_;
 }
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <vector>
 
@@ -21,7 +20,8 @@ struct Look {
   Viewpoint from;
   double way = 0.0;              ///< to there, through cells that were seen free [m], ...
   GuidePath way_W;               ///< ... over these places: here first, there last
-  std::vector<CellIndex> cells;  ///< in sight of it, of those that are needed
+  std::vector<CellIndex> cells;  ///< in sight of it, of those that are needed ...
+  std::size_t camera = 0;        ///< ... by this one, most of them
 };
 
 /// Surveys the map's window: which cells a way to the goal still needs to have seen, and from where these are in sight.
@@ -33,22 +33,21 @@ class Lookout {
   /// Makes room for maps with this one's window.
   void Prepare(const FreeSpace& space);
 
-  /// Keeps what the window holds now, for FarLength.
+  /// Keeps what the window holds now, for TakePath.
   void Keep(const FreeSpace& space);
 
   /// The potential: what the shortest way over what is not known to block costs [m]. Where none leads to the goal within
   /// the window it ends where it leaves that, and the rest is straight. Infinite: there is none.
   double Length(const FreeSpace& space, const Eigen::Vector3d& from, const Eigen::Vector3d& goal);
 
-  /// Whether a metre beside something costs more, as it does planners: where the hull just fits, no curve may.
-  void PreferWide(bool wide) { search_.set_cost({cost_.vertical, wide ? cost_.tight : 1.0}); }
-
   /// Where the way of the last Length ends: at the goal, or where it leaves the window.
   SpanSearch::End end() const { return end_; }
 
-  /// The same, with all that was seen before: of a way that leaves the window.
-  double FarLength(const FreeSpace& space, const Eigen::Vector3d& from,
-                   const Eigen::Vector3d& goal);
+  /// Another way than that of the last Length, between the same places.
+  /// @param wide  a metre beside something costs more, as it does planners: where the hull just fits, no curve may.
+  /// @param far   it leaves the window, and is the shortest with all that was seen before.
+  void TakePath(const FreeSpace& space, const Eigen::Vector3d& from, const Eigen::Vector3d& goal,
+                bool wide, bool far);
 
   /// What is known to block closes every way: around `from` or around the goal. @pre the last Length was between these
   bool Closed(const FreeSpace& space, const Eigen::Vector3d& from, const Eigen::Vector3d& goal);
@@ -104,7 +103,9 @@ class Lookout {
     double time;  ///< [s]
   };
 
-  bool Fits(const HullSpace& hull, const Eigen::Vector3d& p) const;
+  bool TakeFarPath(const FreeSpace& space, const Eigen::Vector3d& from,
+                   const Eigen::Vector3d& goal);
+  bool Fits(const HullSpace& hull, const Eigen::Vector3d& p, const Eigen::Vector3d& start) const;
   bool FitsBetween(const HullSpace& hull, const Eigen::Vector3d& a, const Eigen::Vector3d& b) const;
   void Flood(const HullSpace& hull, const Place& from);
   void BeginAt(const Eigen::Vector3d& from);

@@ -79,9 +79,10 @@ std::optional<NarrowPlace> FindNarrowPlace(const OccupancyMap& map, const Eigen:
   const auto level_in = [&](const Eigen::Vector3d& p_W) {
     CellIndex cell = map.CellOf(p_W) - map.origin();
     const auto low = static_cast<int>(std::ceil((floor - bottom) / map.resolution()));
-    const auto high = static_cast<int>(std::floor((ceiling - bottom) / map.resolution()));
-    const int last = map.size().z() - 1;
-    cell.z() = std::min(std::max({cell.z(), low, 0}), std::min(high, last));
+    const double last = map.size().z() - 1;
+    const auto high =
+        static_cast<int>(std::min(last, std::floor((ceiling - bottom) / map.resolution())));
+    cell.z() = std::min(std::max({cell.z(), low, 0}), high);
     return cell;
   };
   const CellIndex start = level_in(from), goal = level_in(to);

@@ -20,14 +20,14 @@ constexpr double kPatience = 2.5;   // without progress [s] ...
 constexpr int kImages = 6;          // ... in which so many images were used
 constexpr double kNearer = 0.3;     // is progress [m]
 constexpr double kAsksEvery = 0.5;  // [s]
-constexpr double kGap = 1.0;        // without a step: what was before does not count [s]
 constexpr double kAtGoal = 0.3;     // [m]
 
 constexpr double kDetour = 15.0;  // flown without a new best: then over it [m]
 constexpr double kHigher = 0.5;   // is a climb [m]
 constexpr double kOnwards = 1.0;  // is worth to be followed before cells are looked for [m]
-constexpr double kPassesBy = 4.0;  // the places that it follows: they are not stops [m]
-constexpr std::size_t kUsualSteps = 1000, kUsualStruck = 100;
+constexpr double kFollows = 4.0;  // seen of a path that leaves the window [m]
+constexpr double kPassesBy = 4.0;  // the places of that path: they are not stops [m]
+constexpr std::size_t kUsualSteps = 1000, kUsualStruck = 500;
 
 constexpr int kTurnsAround = 4;                  // on the spot, to see all around
 constexpr double kNear = 0.3, kTurnedTo = 0.2;   // of a viewpoint [m], [rad]
@@ -64,16 +64,17 @@ class Scout::Impl {
     if (at_goal) best_ = std::numeric_limits<double>::infinity();
     if (at_goal || !may_look) {
       detour_ = 0.0;
-      no_way_.reset();
+      NoteOpen();
     }
-    if (look_ &&
-        !(may_look ? StillLooks(input, map) : Ends("ends: what is flown now comes first"))) {
+    if (!may_look) way_ = Way::kPlanned;
+    if (look_ && !(may_look ? StillLooks(input, cameras, map)
+                            : Ends("ends: what is flown now comes first"))) {
       Forget();
       was_.push_back(now);
     }
     if (look_) return Aim();
-    const bool asks = IsLongAgo(was_.front(), now, false) && now.t >= asked_t_ + kAsksEvery;
-    if (!may_look || !(asks || way_ != Way::kPlanned)) return std::nullopt;
+    const bool asks = way_ != Way::kPlanned || IsLongAgo(was_.front(), now, false);
+    if (!may_look || !asks || now.t < asked_t_ + kAsksEvery) return std::nullopt;
     asked_t_ = now.t;
     Search(input, cameras, map);
     if (look_ == nullptr) return std::nullopt;
@@ -101,8 +102,17 @@ class Scout::Impl {
   };
 
   void Note(const Was& now) {
-    if (!was_.empty() && now.t > was_.back().t + kGap) Forget();
-    if (!was_.empty()) detour_ += (now.p_WB - was_.back().p_WB).norm();
+    if (!was_.empty() && now.t > was_.back().t + kPatience) {  // what was before does not count
+      if (look_) Ends("ends: there were no steps");
+      way_ = Way::kPlanned;
+      Forget();
+    }
+    if (was_.empty()) counted_W_ = now.p_WB;
+    const double moved = (now.p_WB - counted_W_).norm();
+    if (moved >= kNearer) {  // less may be noise
+      detour_ += moved;
+      counted_W_ = now.p_WB;
+    }
     if (was_.size() == kUsualSteps) was_.erase(was_.begin() + 1);  // without images for long
     was_.push_back(now);
     ForgetLongAgo(now, look_ != nullptr);
@@ -201,13 +211,18 @@ class Scout::Impl {
       way_ = Way::kPlanned;
     }
     const bool progress = MadeProgress(space);
+    const bool leaves = lookout_.end() != SpanSearch::End::kGoal;
+    const bool follows = way_ == Way::kOut && leaves;
     NoteBest(map);
     if (detour_ > most_detour_) {
       if (IsStraighterAbove(space)) return Climb(hull);
       return NextDetour();
     }
-    if (lookout_.end() == SpanSearch::End::kGoal) way_ = Way::kPlanned;
-    if (progress && way_ == Way::kPlanned) return no_way_.reset();
+    if (!leaves) way_ = Way::kPlanned;
+    if (way_ == Way::kPlanned) {
+      if (progress) return NoteOpen();
+      if (!follows && !IsLongAgo(was_.front(), now, false)) return;
+    }
     if (lookout_.Closed(space, now.p_WB, now.goal_W)) {
       NoteNoWay();
       if (turns_++ < kTurnsAround) {
@@ -216,18 +231,17 @@ class Scout::Impl {
       }
       return;
     }
-    turns_ = 0;
-    no_way_.reset();
+    NoteOpen();
     if (!std::isfinite(length_)) return;
     if (lookout_.end() == SpanSearch::End::kAnywhere && !up_) return Climb(hull);
     bool needs = true;
-    const bool leaves = lookout_.end() != SpanSearch::End::kGoal;
     if (way_ != Way::kOut) {
+      if (prefers_wide_) lookout_.TakePath(space, now.p_WB, now.goal_W, true, false);
       needs = lookout_.NoteNeeded(hull, now.p_WB);
-      if (leaves && (!needs || lookout_.seen() > kPassesBy)) way_ = Way::kOut;
+      if (leaves && (!needs || lookout_.seen() > kFollows)) way_ = Way::kOut;
     }
     if (way_ == Way::kOut) {
-      length_ = lookout_.FarLength(space, now.p_WB, now.goal_W);
+      lookout_.TakePath(space, now.p_WB, now.goal_W, prefers_wide_, true);
       needs = lookout_.NoteNeeded(hull, now.p_WB);
       if (lookout_.seen() > kOnwards) look_ = lookout_.Onwards(yaw, struck_);
       reason_ = "begins: along the way that leaves the map's window";
@@ -239,13 +253,18 @@ class Scout::Impl {
       look_ = lookout_.Choose(hull, cameras, input.vehicle, input.pull_W, struck_);
       reason_ = needs ? "begins: no progress, and cells on the way were never seen"
                       : "begins: no progress, and something is where the goal is";
-    } else if (Stands() && lookout_.seen() > kOnwards) {  // no plan leads there
+    } else if (Stands() && lookout_.seen() > kAtGoal) {  // no plan leads there
       look_ = lookout_.Onwards(yaw, struck_);
       reason_ = "begins: all was seen, but no plan leads there";
     } else {
       return;
     }
     if (look_ == nullptr) struck_.clear();  // all were tried: again
+  }
+
+  void NoteOpen() {
+    turns_ = 0;
+    no_way_.reset();
   }
 
   /// To a goal that stands.
@@ -264,7 +283,7 @@ class Scout::Impl {
     if (nearer) {
       best_ = length_;
       way_ = Way::kPlanned;
-      lookout_.PreferWide(false);
+      prefers_wide_ = false;
     }
     if (nearer || IsStraight(map)) {
       detour_ = 0.0;
@@ -339,8 +358,10 @@ class Scout::Impl {
   }
 
   /// Until the cells were seen, or were looked for in vain, or the place is not reached.
-  bool StillLooks(const ReplanInput& input, const OccupancyMap& map) {
+  bool StillLooks(const ReplanInput& input, const std::vector<LookCamera>& cameras,
+                  const OccupancyMap& map) {
     const Was& now = was_.back();
+    const int images = look_->camera < cameras.size() ? cameras[look_->camera].images : now.images;
     const double left = (now.p_WB - look_->from.p_WB).norm();
     const bool passes = way_ != Way::kUp && look_->cells.empty();  // from there the planner goes on
     if (passes && left < std::min(kPassesBy, 0.5 * look_->way)) return Ends("ends: passed");
@@ -353,10 +374,10 @@ class Scout::Impl {
     const double turn = estimation::Yaw(input.vehicle.q_WB) - look_->from.yaw;
     const bool near = left < kNear;
     if (near && std::abs(estimation::WrapAngle(turn)) < kTurnedTo && !images_there_) {
-      images_there_ = now.images;
+      images_there_ = images;
     }
     const bool closed = SpaceFor(options_, map).Blocked(look_->from.p_WB);
-    const bool in_vain = closed || (images_there_ && now.images >= *images_there_ + kLooks);
+    const bool in_vain = closed || (images_there_ && images >= *images_there_ + kLooks);
     const bool still = now.t >= was_.front().t + kTries && IsStill();
     const bool stands = !near && (Stands() || (InPart() && still));
     if (InPart() && (now.p_WB - Aim().p_WB).norm() < std::min(kNear, 0.5 * leg_)) {
@@ -367,7 +388,7 @@ class Scout::Impl {
     }
     if (!near && still && AimsNearer(input, map)) return true;
     if (!in_vain && !stands && now.t < until_) return true;
-    if (!closed && !in_vain) lookout_.PreferWide(true);
+    if (!closed && !in_vain) prefers_wide_ = true;
     if (way_ == Way::kUp && !near) EndClimb();
     if (passes) way_ = Way::kPlanned;
     if (struck_.size() == kUsualStruck) struck_.erase(struck_.begin());
@@ -389,11 +410,13 @@ class Scout::Impl {
   double length_ = 0.0;  // of the shortest way, when it was last asked for
   double best_ = std::numeric_limits<double>::infinity();  // the least one so far, ...
   Eigen::Vector3d best_goal_W_ = Eigen::Vector3d::Zero();  // ... with the goal here,
-  double detour_ = 0.0;                                    // and what was flown since [m]
+  double detour_ = 0.0;                                    // and what was flown since [m], ...
+  Eigen::Vector3d counted_W_ = Eigen::Vector3d::Zero();    // ... until here
   double most_detour_ = kDetour;
   Way way_ = Way::kPlanned;
   int turns_ = 0;                    // on the spot, since there is no way
   bool doubts_ = false;              // of cells that are known to block
+  bool prefers_wide_ = false;        // ways: it stood where the hull just fits
   bool up_ = false;                  // as high as it could climb, for that best
   const Look* look_ = nullptr;       // where it flies to; nullptr: to the goal
   std::size_t aim_ = 0, reached_ = 0;  // of the places on the way there

@@ -10,7 +10,6 @@
 namespace touchdown::planning {
 namespace {
 
-constexpr double kCaught = 0.5;      // of the way there, that the end moves in the longest plan at most
 constexpr double kOnTheWay = 0.5;    // of the longest plan, where the end is too far
 constexpr double kLowestWait = 0.6;  // of the body over a deck below a roof [m]
 
@@ -34,9 +33,7 @@ void PlanEnd::Set(const ReplanInput& input, const SplineState& start, const Limi
   const double t0 = input.t_start;
   const double guess = GuessDuration(start, t0, *pad_, target_, limits, 1.0);
   if (guess <= options_.max_duration || !std::isfinite(guess)) return;
-  const Eigen::Vector3d end = EndStateAt(*pad_, target_, t0).state.p;
-  const Eigen::Vector3d later = EndStateAt(*pad_, target_, t0 + options_.max_duration).state.p;
-  if ((later - end).norm() > kCaught * (end - start.p).norm()) return;
+  const Eigen::Vector3d end = EndStateAt(*pad_, target_, t0 + guess).state.p;
   on_the_way_.emplace(start.p + kOnTheWay * options_.max_duration / guess * (end - start.p));
   pad_ = &*on_the_way_;
   target_ = AtRest();

@@ -16,7 +16,7 @@ class PlanEnd {
  public:
   explicit PlanEnd(const ReplannerOptions& options) : options_(options) {}
 
-  /// A pad that is hardly slower than the vehicle is not chased with ends on the way.
+  /// A pad that drives away is met where it will be when the vehicle has caught up with it.
   void Set(const ReplanInput& input, const SplineState& start, const Limits& limits);
 
   /// No place to look from, nor on the way.

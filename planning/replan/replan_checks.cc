@@ -133,7 +133,7 @@ void Validate(const ReplannerOptions& o) {
   Require(o.reaction >= 0.0, "reaction", o.reaction, ">= 0 s");
   Require(o.max_guides >= 1, "max_guides", o.max_guides, ">= 1");
   Require(o.max_rebinds >= 0, "max_rebinds", o.max_rebinds, ">= 0");
-  Require(o.max_work >= 1, "max_work", o.max_work, ">= 1");
+  Require(o.max_work >= 1 && o.max_work <= 100000000, "max_work", o.max_work, "in [1, 100000000]");
   Require(o.gap >= 0.0 && o.gap < 1.0, "gap", o.gap, "in [0, 1)");
   Require(o.max_iterations >= 1, "max_iterations", o.max_iterations, ">= 1");
 }

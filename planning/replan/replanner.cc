@@ -457,8 +457,7 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
     if (attempt_.spent()) {
       // A later attempt gets a whole budget in the next step. A first one had it, and is given up.
       unfinished_ = tried > 1 ? attempt : decision.next;
-      // A vehicle at rest that does not see a cell which the path needs may look from elsewhere (fallback_ladder.h).
-      return facts.at_rest && result_.unseen_W ? ReplanReason::kUnobserved : reason;
+      return reason;
     }
     if (!decision.next) return decision.reason;
     attempt = *decision.next;

@@ -16,8 +16,8 @@ namespace touchdown::planning {
 namespace {
 
 // Room at first; a search that needs more makes more.
-constexpr std::size_t kUsualSpans = 1 << 18;
-constexpr std::size_t kUsualGates = 1024;
+constexpr std::size_t kUsualCosts = 1 << 18, kUsualGates = 1024;
+constexpr std::size_t kUsualEntries = 4;  // of a column
 
 struct Step {
   int x, y;
@@ -52,10 +52,7 @@ void RequireFactor(const char* name, double value) {
 
 }  // namespace
 
-SpanSearch::Queue::Queue() {
-  first_.reserve(kUsualSpans);
-  entries_.reserve(kUsualSpans);
-}
+SpanSearch::Queue::Queue() { first_.reserve(kUsualCosts); }
 
 void SpanSearch::Queue::Clear() {
   std::fill(first_.begin(), first_.end(), -1);
@@ -98,6 +95,7 @@ void SpanSearch::Reserve(const OccupancyMap& map) {
   way_.reserve(kUsualGates);
   gates_.reserve(kUsualGates);
   const auto columns = static_cast<std::size_t>(map.size().head<2>().prod());
+  queue_.Reserve(kUsualEntries * columns);
   if (nodes_.size() == columns * ColumnSpans::kMost) return;
   nodes_.assign(columns * ColumnSpans::kMost, Node());
   search_ = 0;

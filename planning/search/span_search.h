@@ -64,6 +64,7 @@ class SpanSearch {
   class Queue {
    public:
     Queue();
+    void Reserve(std::size_t entries) { entries_.reserve(entries); }
     void Clear();
     bool empty() const { return waiting_ == 0; }
     void Push(float f, std::uint32_t address);

@@ -320,6 +320,15 @@ TEST(Replanner, NamesWhyThereIsNoPlan) {
   EXPECT_GT(end.p_WB.x(), start.x() + 20.0);
   EXPECT_LT(end.p_WB.x(), 100.0);
 
+  // A pad that drives ahead: it is met where the vehicle has caught up with it, be it near or far now.
+  for (const double ahead : {20.0, 60.0, 100.0}) {
+    const ArcPad drives_off({ahead, 0.0, 0.3}, 2.0, 0.0, 0.0);
+    const ReplanResult chase = ask(free, Input(start, drives_off, 0.0));
+    EXPECT_EQ(chase.status, ReplanStatus::kPlanned) << ahead;
+    const FlatState at = chase.curve.EvaluateOnward(chase.curve.t_end());
+    EXPECT_GT(at.p_WB.x(), start.x() + 20.0) << ahead;
+  }
+
   // A pad that stands inside a pillar.
   OccupancyMap on_pad = ObservedMap();
   AddPillar({5.0, 0.0}, &on_pad);

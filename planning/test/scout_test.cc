@@ -96,11 +96,9 @@ TEST_F(Scouted, WithRareImagesLater) {
 
 TEST_F(Scouted, NeverWithoutACameraOrWhereItMayNot) {
   EXPECT_TRUE(std::isinf(FirstLook(1, false)));
-  cameras_[0].images = 0;
-  const Eigen::Vector3d p = p_;
   for (int i = 0; i < 100; ++i) {
     t_ += 0.1;
-    EXPECT_FALSE(scout_.Step(Input(p, *pad_, t_), {}, map_, true));
+    EXPECT_FALSE(scout_.Step(Input(p_, *pad_, t_), {}, map_, true));
   }
 }
 
@@ -249,7 +247,6 @@ TEST_F(Scouted, WhereWhatWasSeenClosesEveryWayThereIsNone) {
   }
   ASSERT_TRUE(scout_.no_way());
   EXPECT_GE(scout_.no_way()->since, 2.5);
-  EXPECT_LE(scout_.no_way()->since, t_);
   for (int y = -7; y < 8; ++y) {  // a door opens
     for (int z = 0; z < 54; ++z) map_.SetState({31, y, z}, CellState::kFree);
   }
@@ -258,6 +255,28 @@ TEST_F(Scouted, WhereWhatWasSeenClosesEveryWayThereIsNone) {
     if (look_) GoThere();
   }
   EXPECT_FALSE(scout_.no_way());
+}
+
+TEST_F(Scouted, EveryTimeThatItIsClosedInItLooksAround) {
+  map_.MarkRestFree();
+  for (const char* time : {"first", "second"}) {
+    CloseIn(&map_);
+    int looks = 0;
+    for (int i = 0; i < 300; ++i) {
+      look_ = Step();
+      if (!look_) continue;
+      ++looks;
+      GoThere();
+    }
+    EXPECT_GT(looks, 3) << time;
+    EXPECT_TRUE(scout_.no_way()) << time;
+    map_ = OccupancyMap{OccupancyMapOptions{}};
+    map_.Recentre(p_);
+    map_.MarkRestFree();
+    for (int i = 0; i < 50; ++i) Step({0.5, 0.0, 0.0});  // it flies on
+    EXPECT_FALSE(scout_.no_way()) << time;
+    p_.x() = 0.05;
+  }
 }
 
 TEST_F(Scouted, ThereIsAWayToAGoalThatMoves) {
@@ -402,20 +421,67 @@ TEST_F(Scouted, NoEarlyClimbAfterATimeAtTheGoal) {
 
 TEST_F(Scouted, DoesNotAllocateInFlight) {
   if (solvers::AllocationCount() < 0) GTEST_SKIP() << "a sanitizer owns the heap";
-  map_.MarkRestFree();
-  WallAcross(&map_, 3.05);
   scout_.Prepare(map_);
   long allocations = 0;
-  for (int i = 0; i < 1500; ++i) {
-    t_ += 0.1;
-    cameras_[0].images += i % 200 < 100;  // and none for long
-    ReplanInput input = Input(p_, *pad_, t_);
-    input.endpoint.height = input.endpoint.height_floor = 0.0;
-    const long before = solvers::AllocationCount();
-    scout_.Step(input, cameras_, map_, true);
-    allocations += solvers::AllocationCount() - before;
+  int looks = 0;
+  const auto stay = [&](bool follows) {
+    for (int i = 0; i < 600; ++i) {
+      t_ += 0.1;
+      cameras_[0].images += i % 200 < 100;  // and none for long
+      ReplanInput input = Input(p_, *pad_, t_);
+      input.endpoint.height = input.endpoint.height_floor = 0.0;
+      const long before = solvers::AllocationCount();
+      look_ = scout_.Step(input, cameras_, map_, true);
+      allocations += solvers::AllocationCount() - before;
+      looks += look_.has_value();
+      if (look_ && follows && i % 20 == 0) GoThere();
+    }
+  };
+  for (const bool follows : {false, true}) stay(follows);  // among unseen cells
+  map_.MarkRestFree();
+  for (const double height : {3.5, 5.3}) {  // along a wall, and over it
+    WallAcross(&map_, 3.05, height);
+    for (const bool follows : {false, true}) stay(follows);
   }
+  CloseIn(&map_);
+  stay(true);
   EXPECT_EQ(allocations, 0);
+  EXPECT_GT(looks, 500);
+}
+
+// What it measures of its own place trembles.
+TEST_F(Scouted, WhoHoversFliesNoDetour) {
+  map_.MarkRestFree();
+  WallAcross(&map_, 3.05, 3.5);
+  for (int i = 0; i < 1500; ++i) {
+    look_ = Step({0.0, i % 2 == 0 ? 0.3 : -0.3, 0.0});
+    EXPECT_FALSE(look_ && look_->p_WB.z() > p_.z() + 0.5) << t_;
+  }
+}
+
+// A second camera, which sees nothing of it, is no reason to give a place up.
+TEST_F(Scouted, OnlyTheCameraThatIsToSeeItCounts) {
+  FirstLook();
+  ASSERT_TRUE(look_);
+  GoThere();
+  LookCamera down = cameras_[0];
+  down.R_BC << 0, -1, 0, -1, 0, 0, 0, 0, -1;
+  cameras_.push_back(down);
+  for (int i = 0; i < 10; ++i) {
+    cameras_[1].images += 5;
+    EXPECT_TRUE(Step(Eigen::Vector3d::Zero(), 0)) << i;
+  }
+  for (int i = 0; i < 4; ++i) look_ = Step();
+  EXPECT_FALSE(look_);
+}
+
+// Who landed meanwhile, or hardly is asked, begins anew.
+TEST_F(Scouted, AClimbIsOverWhereItMayNotLook) {
+  map_.MarkRestFree();
+  WallAcross(&map_, 3.05, 3.5);
+  ASSERT_TRUE(ClimbsOnceToAndFro());
+  EXPECT_FALSE(Step(Eigen::Vector3d::Zero(), 1, false));
+  for (int i = 0; i < 20; ++i) EXPECT_FALSE(Step()) << i;
 }
 
 // Away from a goal to which nothing is in the way: no detour, however long.

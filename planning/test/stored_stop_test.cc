@@ -285,6 +285,21 @@ TEST_F(StopOverDeck, CloseOverADeckThatDrivesOffNothingRests) {
   EXPECT_TRUE(rests(0.04, 0.4));
 }
 
+// The second half of a landing begins close over the deck: there the vehicle drives as the deck does.
+TEST_F(StopOverDeck, ALandingThatFollowsTheDeckGoesOnCloseOverIt) {
+  map_.MarkRestFree();
+  const ArcPad drives({0, 0, 0.45}, 0.8, 0.0, 0.0);
+  hull_.pad = &drives;
+  const auto lands = [&](double speed) {
+    FlightPair pair;
+    pair.curve = Between({{0, 0, 0.67}, {speed, 0, -0.2}, {0, 0, 0}},
+                         {{0.5 * speed, 0, 0.57}, {speed, 0, -0.2}, {0, 0, 0}}, 0.5);
+    return ProvePair(0.0, 0.35, PairEnd::kContact, kLimits, hull_, &pair).contact;
+  };
+  EXPECT_TRUE(lands(0.8));
+  EXPECT_FALSE(lands(0.0));
+}
+
 // A leaning vehicle's foot touches early: no plan may dive close to the deck and level there.
 TEST_F(StopOverDeck, CloseOverTheDeckNothingSinksFasterThanItMayTouch) {
   map_.MarkRestFree();
