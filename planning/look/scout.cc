@@ -30,7 +30,8 @@ constexpr double kPassesBy = 4.0;  // the places of that path: they are not stop
 constexpr std::size_t kUsualSteps = 1000, kUsualStruck = 500;
 
 constexpr int kTurnsAround = 4;                  // on the spot, to see all around
-constexpr double kNear = 0.3, kTurnedTo = 0.2;   // of a viewpoint [m], [rad]
+constexpr double kNear = 0.3, kTurnedTo = 0.2;   // of a viewpoint [m], [rad] ...
+constexpr double kSlow = 0.3;                    // ... where it hardly leans any more [m/s]
 constexpr double kTries = 0.6, kStill = 0.15;    // a part of the way [s], [m/s] ...
 constexpr double kShortest = 0.1;                // ... of so much [m]
 constexpr int kLooks = 3;                        // images that are used there
@@ -60,9 +61,8 @@ class Scout::Impl {
     Was now = {input.t_now, 0, input.vehicle.p_WB, Goal(input, map), input.vehicle.v_WB.norm()};
     for (const LookCamera& camera : cameras) now.images += camera.images;
     Note(now);
-    const bool at_goal = (now.goal_W - now.p_WB).norm() < kAtGoal;
-    if (at_goal) best_ = std::numeric_limits<double>::infinity();
-    if (at_goal || !may_look) {
+    if (AtGoal()) best_ = std::numeric_limits<double>::infinity();
+    if (AtGoal() || !may_look) {
       detour_ = 0.0;
       NoteOpen();
     }
@@ -128,6 +128,7 @@ class Scout::Impl {
   }
 
   bool IsStill() const { return was_.back().speed < kStill; }
+  bool AtGoal() const { return (was_.back().goal_W - was_.back().p_WB).norm() < kAtGoal; }
 
   /// For as long as a question takes.
   bool Stands() const {
@@ -253,7 +254,7 @@ class Scout::Impl {
       look_ = lookout_.Choose(hull, cameras, input.vehicle, input.pull_W, struck_);
       reason_ = needs ? "begins: no progress, and cells on the way were never seen"
                       : "begins: no progress, and something is where the goal is";
-    } else if (Stands() && lookout_.seen() > kAtGoal) {  // no plan leads there
+    } else if (Stands() && !AtGoal()) {  // no plan leads there
       look_ = lookout_.Onwards(yaw, struck_);
       reason_ = "begins: all was seen, but no plan leads there";
     } else {
@@ -373,7 +374,8 @@ class Scout::Impl {
     if (cells > 0.0 && static_cast<double>(unseen) <= kEnough * cells) return Ends("ends: seen");
     const double turn = estimation::Yaw(input.vehicle.q_WB) - look_->from.yaw;
     const bool near = left < kNear;
-    if (near && std::abs(estimation::WrapAngle(turn)) < kTurnedTo && !images_there_) {
+    const bool turned = std::abs(estimation::WrapAngle(turn)) < kTurnedTo;
+    if (near && turned && now.speed < kSlow && !images_there_) {
       images_there_ = images;
     }
     const bool closed = SpaceFor(options_, map).Blocked(look_->from.p_WB);

@@ -198,6 +198,16 @@ TEST_F(Scouted, APlaceIsStruckAfterThreeImagesInVain) {
               std::abs(estimation::WrapAngle(look_->yaw - first.yaw)) >= 0.5);
 }
 
+// While it brakes there it leans, and its camera looks elsewhere.
+TEST_F(Scouted, ImagesCountFromWhereItHovers) {
+  FirstLook();
+  ASSERT_TRUE(look_);
+  GoThere();
+  for (int i = 0; i < 10; ++i) EXPECT_TRUE(Step({0.0, i % 2 == 0 ? 1.0 : -1.0, 0.0})) << i;
+  for (int i = 0; i < 4; ++i) look_ = Step();
+  EXPECT_FALSE(look_);
+}
+
 TEST_F(Scouted, APlaceThatIsNotReachedIsStruck) {
   FirstLook();
   ASSERT_TRUE(look_);
