@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Prints a scenario: 500 m among 60 buildings, drawn from a seed. `course.py 1 > out/course.yaml`"""
+"""Prints a scenario: 500 m among 60 buildings, drawn from a seed. `python3 docs/examples/course.py 1 > out/course.yaml`"""
 
 import random
 import sys

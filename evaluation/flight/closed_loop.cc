@@ -200,6 +200,7 @@ class Trial {
     }
     if (status.look != look_) {
       look_ = status.look;
+      result_.looks += look_.starts_with("begins");
       Note(t, "look", std::string(look_));
     }
   }

@@ -47,14 +47,14 @@ std::string NoWaySentence(const TrialResult& result) {
   if (!result.no_way) return {};
   const NoWayFigures& no_way = *result.no_way;
   std::string text = fmt::format(
-      " From {:.1f} s on the vehicle knew no way: after {} look{}, what it had seen closes every "
-      "one.",
+      " From {:.1f} s on the vehicle knew no way: after {} look{}, what it had seen closed every "
+      "way.",
       no_way.since_s, no_way.looks, no_way.looks == 1 ? "" : "s");
   if (!no_way.narrowest) return text;
   const Eigen::Vector3d& at = no_way.narrowest->p_W;
   return text + fmt::format(
                     " The widest passage that may be left is {:.1f} m wide, at [{:.1f}, {:.1f}, "
-                    "{:.1f}] m; {:.1f} m are needed.",
+                    "{:.1f}] m; {:.1f} m between seen cells are needed.",
                     no_way.narrowest->width, at.x(), at.y(), at.z(), no_way.needed_m);
 }
 

@@ -116,6 +116,7 @@ struct TrialResult {
   bool within_limits = false;
   std::optional<SafetyFigures> safety;  ///< of a planner that flies by the safety rule
   std::optional<PriorFigures> prior;    ///< where the scenario has one
+  int looks = 0;                        ///< that it went, since it made no progress
   std::optional<NoWayFigures> no_way;   ///< as it stood at the end
   TrialTiming timing;
 

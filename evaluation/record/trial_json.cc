@@ -168,6 +168,7 @@ Json LandJson(const Scenario& scenario, const TrialResult& result) {
   json["own_state"] = OwnStateJson(result.own_state);
   json["safety"] = SafetyJson(result.safety);
   json["map_prior"] = PriorJson(result.prior);
+  json["looks"] = result.looks;
   json["no_way"] = NoWayJson(result.no_way);
   json["planner"] = scenario.planner;
   json["backend"] = scenario.solver_name();

@@ -30,14 +30,14 @@ TEST(FailureWords, NoWayIsSaidWithWhatWasTried) {
   EXPECT_EQ(NoWaySentence(result), "");
   result.no_way = {12.34, 1, {}, 1.1};
   EXPECT_EQ(NoWaySentence(result),
-            " From 12.3 s on the vehicle knew no way: after 1 look, what it had seen closes every "
-            "one.");
+            " From 12.3 s on the vehicle knew no way: after 1 look, what it had seen closed every "
+            "way.");
   result.no_way = {12.34, 4, planning::NarrowPlace{{4.0, 0.1, 0.7}, 0.9}, 1.1};
   EXPECT_EQ(
       NoWaySentence(result),
-      " From 12.3 s on the vehicle knew no way: after 4 looks, what it had seen closes every "
-      "one. The widest passage that may be left is 0.9 m wide, at [4.0, 0.1, 0.7] m; 1.1 m are "
-      "needed.");
+      " From 12.3 s on the vehicle knew no way: after 4 looks, what it had seen closed every "
+      "way. The widest passage that may be left is 0.9 m wide, at [4.0, 0.1, 0.7] m; 1.1 m between "
+      "seen cells are needed.");
 }
 
 TEST(FailureWords, WhatTheLandingConditionLackedMostAndAtTheEnd) {

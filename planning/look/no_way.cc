@@ -78,6 +78,7 @@ std::optional<NarrowPlace> FindNarrowPlace(const OccupancyMap& map, const Eigen:
   const double bottom = (map.origin().z() + 0.5) * map.resolution();
   const auto level_in = [&](const Eigen::Vector3d& p_W) {
     CellIndex cell = map.CellOf(p_W) - map.origin();
+    cell = cell.cwiseMax(CellIndex::Zero()).cwiseMin(map.size() - CellIndex::Ones());
     const auto low = static_cast<int>(std::ceil((floor - bottom) / map.resolution()));
     const double last = map.size().z() - 1;
     const auto high =

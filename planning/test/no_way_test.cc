@@ -42,10 +42,14 @@ TEST(NoWay, OpenSpaceIsAsWideAsItCounts) {
   EXPECT_NEAR(place->width, NarrowPlace::kWidest, 0.1 + 1e-9);
 }
 
-TEST(NoWay, AClosedWallHasNoneAndNeitherHasAPlaceOutside) {
+TEST(NoWay, AClosedWallHasNone) {
   EXPECT_FALSE(FindNarrowPlace(Walled(0.0, {}), kFrom, kTo, -9.0, 9.0));
+}
+
+// A goal may be far beyond the wall that is seen.
+TEST(NoWay, AnEndBeyondTheWindowCountsAsAtItsBorder) {
   const OccupancyMap open(SmallMap(0.0));
-  EXPECT_FALSE(FindNarrowPlace(open, kFrom, {9.0, 0.0, 0.0}, -9.0, 9.0));
+  EXPECT_TRUE(FindNarrowPlace(open, kFrom, {9.0, 0.0, 0.0}, -9.0, 9.0));
   EXPECT_TRUE(FindNarrowPlace(open, kFrom, {2.0, 0.0, -30.0}, -9.0, 9.0)) << "below the window";
 }
 

@@ -35,6 +35,7 @@ def test_a_flight_is_the_programs_to_the_last_bit(run, scenario, seed, changes):
     result = td.run_trial(scenario, seed=seed, set=changes)
     assert without_times(result.document) == without_times(json.loads(command.stdout))
     assert result.outcome == result.document["outcome"] and result.seed == seed
+    assert set(result.document) <= set(vars(result)), "each is an attribute"
 
 
 def test_a_record_is_the_programs(run, tmp_path):

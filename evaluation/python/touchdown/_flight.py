@@ -114,6 +114,7 @@ class TrialResult:
     time_ratio: Optional[float]
     within_limits: bool
     touchdown: Optional[Touchdown]
+    mean_abs_error_last_5s_m: Dict[str, Optional[float]]
     min_clearance_m: Optional[float]
     simulated_s: float
     effort_n2s: float
@@ -131,6 +132,8 @@ class TrialResult:
     own_state: Optional[Dict[str, Any]]
     safety: Optional[Dict[str, Any]]
     map_prior: Optional[Dict[str, Any]]
+    looks: int
+    no_way: Optional[Dict[str, Any]]
     planner: str
     backend: str
     scenario: str

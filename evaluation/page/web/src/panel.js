@@ -88,7 +88,7 @@ export class Panel {
 
   /** Whose words are shown. */
   choose(flight) {
-    const rows = flight.goal ? [...NOW.slice(0, 2), "own state", "horizontally to the goal", "above the goal", ...NOW_THEN, "wind here"] : [...NOW, "own state", "horizontally to the pad", "feet above the deck", ...NOW_THEN, "estimate of the pad", "wind here"];
+    const rows = flight.goal ? [...NOW.slice(0, 2), "progress", "own state", "horizontally to the goal", "above the goal", ...NOW_THEN, "wind here"] : [...NOW, "own state", "horizontally to the pad", "feet above the deck", ...NOW_THEN, "estimate of the pad", "wind here"];
     this.now = new Table(rows);
     this.place.replaceChildren(this.now.object);
     const { document: d } = flight;
@@ -115,7 +115,9 @@ export class Panel {
     const { vehicle, pad_believed, reference, air } = samples;
     const i = flight.row(t), b = flight.padRow(pad_believed, t);
     const aim = flight.aimAt(t), above = vehicle.pz[i] - aim.z - (flight.goal ? 0 : model.foot_depth);
-    const gate = flight.eventAt("gate", t), descent = flight.eventAt("descent", t)?.text ?? "none";
+    const gate = flight.eventAt("gate", t);
+    const closed = (flight.eventAt("no_way", t)?.text ?? "over") !== "over";
+    const progress = closed ? "no way is known" : descentWords(flight.eventAt("descent", t)?.text ?? "none");
     const wind = Math.hypot(air.vx[i], air.vy[i], air.vz[i]);
     const ended = t > flight.end + 1e-6 ? `ended at ${flight.end.toFixed(2)} s; then: ` : "";
     const mode = ended + flight.modeAt(t).replace("_", " ") + reasonOf(flight.eventAt("mode", t), flight.goal ? "goal" : "pad");
@@ -129,7 +131,7 @@ export class Panel {
     ];
     const blows = wind < 0.005 ? "none" : `${wind.toFixed(1)} m/s`;
     if (flight.goal) {
-      this.now.set([mode, flownWords(flight, t), ...place, blows]);
+      this.now.set([mode, flownWords(flight, t), progress, ...place, blows]);
       return;
     }
     const doubt = b < 0 ? 0 : flight.deckDoubt(b);
@@ -137,7 +139,7 @@ export class Panel {
       mode,
       flownWords(flight, t),
       gateWords(gate?.text ?? "no_pad") + (gate ? `, since ${gate.t.toFixed(2)} s` : ""),
-      descentWords(descent),
+      progress,
       ...place,
       b < 0 ? "not yet" : `${Math.hypot(pad_believed.px[b] - aim.x, pad_believed.py[b] - aim.y).toFixed(2)} m off, 1 σ ${(doubt / pad.sigmas).toFixed(2)} m${doubt > pad.sure ? "; too uncertain to tell its cells from obstacles" : ""}`,
       blows,

@@ -27,8 +27,8 @@ struct NarrowPlace {
 double LeastGap(const OccupancyMap& map);
 
 /// The narrowest place of the widest way from here to there, through all that is not occupied, between floor and
-/// ceiling [m]. An end above or below these or the window counts as at their border. Empty: there is none, or an end is
-/// occupied or beside the window. Takes about a second, and allocates: for when there is nothing else to do.
+/// ceiling [m]. An end beyond these or the window counts as at their border. Empty: there is none, or an end is occupied.
+/// Takes about a second, and allocates: for when there is nothing else to do.
 std::optional<NarrowPlace> FindNarrowPlace(const OccupancyMap& map, const Eigen::Vector3d& from,
                                            const Eigen::Vector3d& to, double floor, double ceiling);
 
