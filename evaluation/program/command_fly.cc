@@ -132,9 +132,8 @@ std::string Summary(const Scenario& scenario, const TrialResult& r, const Regist
   if (r.safety) {
     const SafetyFigures& safety = *r.safety;
     text += fmt::format(
-        "  safety                 uncertified steps {}, narrow steps {}, stops flown {}, map "
-        "errors "
-        "{}, errors beyond a margin {}\n",
+        "  safety                 uncertified steps {}, narrow steps {}, stops flown {}, "
+        "map errors {}, errors beyond a margin {}\n",
         safety.uncertified_steps, safety.narrow_steps, safety.stops_flown, safety.map_errors,
         safety.tracking_events + safety.drift_events);
   }
@@ -145,7 +144,7 @@ std::string Summary(const Scenario& scenario, const TrialResult& r, const Regist
         "margins\n",
         scenario.planning.clearance, kept);
   }
-  if (r.looks > 0) text += fmt::format("  went to look           {} times\n", r.looks);
+  if (r.looks > 0) text += fmt::format("  looks                  {}\n", r.looks);
   text += fmt::format("  replans                {}", r.replans);
   for (const auto& [status, count] : r.replans_by_status) {
     text += fmt::format(", {} {}", count, status);

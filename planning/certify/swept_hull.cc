@@ -315,7 +315,7 @@ Sweep SweepHull(const UniformBspline& curve, double t_from, double t_to, const H
   // A hull thinner than kSweepRoom counts as half of it: two such balls contain as much at least.
   const double radius = std::max(hull.radius(), 0.5 * kSweepRoom);
   Stretch stretch(radius);
-  Eigen::Vector3d before = path.At(t_from), v = curve.EvaluateOnward(t_from).v_WB;
+  Eigen::Vector3d before = start.p_W, v = curve.EvaluateOnward(t_from).v_WB;
   double t_before = t_from;
   const double below = std::isfinite(t_contact) ? kFaceSlack : 0.0;
   const auto holds = [&](const Eigen::Vector3d& p, double t) {

@@ -263,17 +263,18 @@ void Lookout::Flood(const HullSpace& hull, const Place& from) {
   }
 }
 
-/// A hull fits whose centre is so many cells beyond `from`. What is found out stands for the next strides.
-bool Lookout::FitsAt(const HullSpace& hull, const Eigen::Vector3d& from, const CellIndex& cells) {
+/// Whether a hull fits whose centre is so many cells beyond `from`, or was reached. It stands for the next strides.
+Lookout::Mark Lookout::MarkAt(const HullSpace& hull, const Eigen::Vector3d& from,
+                              const CellIndex& cells) {
   const OccupancyMap& map = *hull.space->map;
   const CellIndex cell = map.CellOf(from) + cells;
-  if (!map.InWindow(cell)) return false;
+  if (!map.InWindow(cell)) return kClosed;
   Mark& mark = marks_.At(cell);
   if (mark == kNone) {
     const Eigen::Vector3d p = from + map.resolution() * cells.cast<double>();
     mark = Fits(hull, p, begin_.p_W) ? kFits : kClosed;
   }
-  return mark != kClosed;
+  return mark;
 }
 
 void Lookout::Flood(const HullSpace& hull, const Place& from, int stride, Mark reached) {
@@ -292,7 +293,9 @@ void Lookout::Flood(const HullSpace& hull, const Place& from, int stride, Mark r
     places_.push_back({from.p_W + side * node.cast<double>(), way, before});
     for (int i = 0; i < 27; ++i) {
       const CellIndex next = node + step_of(i);
-      if (!FitsAt(hull, from.p_W, next) || marks_.At(origin + next) == reached) continue;
+      if (const Mark mark = MarkAt(hull, from.p_W, next); mark == kClosed || mark == reached) {
+        continue;
+      }
       queue_.push_back({way + side * step_of(i).cast<double>().norm(), next, 27 * place + i});
       std::push_heap(queue_.begin(), queue_.end(), later);
     }
@@ -309,7 +312,10 @@ void Lookout::Flood(const HullSpace& hull, const Place& from, int stride, Mark r
     const double length = side * step.cast<double>().norm();
     const int tests = static_cast<int>(std::ceil(length / kBetweenTested));
     int passed = 1;
-    while (passed < tests && FitsAt(hull, from.p_W, at.node - step * passed / tests)) ++passed;
+    const auto fits = [&](const CellIndex& node) {
+      return MarkAt(hull, from.p_W, node) != kClosed;
+    };
+    while (passed < tests && fits(at.node - step * passed / tests)) ++passed;
     if (passed == tests) add(at.node, at.way, at.number / 27);
   }
 }

@@ -69,8 +69,8 @@ class Lookout {
   /// A straight way leads from a to b through cells that were seen free. @pre a look
   bool Leads(const HullSpace& hull, const Eigen::Vector3d& a, const Eigen::Vector3d& b) const;
 
-  /// From where most of the needed cells are seen in the time that it takes, of all places to which cells lead that
-  /// were seen free. Not from where `struck` is. nullptr: from nowhere. Valid until the next call. @pre NoteNeeded
+  /// From where most of the needed cells are seen in the time that it takes, of the nearest places to which cells lead
+  /// that were seen free. Not from where `struck` is. nullptr: from nowhere. Valid until the next call. @pre NoteNeeded
   const Look* Choose(const HullSpace& hull, const std::vector<LookCamera>& cameras,
                      const estimation::VehicleState& vehicle, const Eigen::Vector3d& pull_W,
                      const std::vector<Viewpoint>& struck);
@@ -136,7 +136,7 @@ class Lookout {
     CellIndex node;  ///< cells beyond where the flood begins
     int number;      ///< as they came: 27 times the place before, and the step from there
   };
-  bool FitsAt(const HullSpace& hull, const Eigen::Vector3d& from, const CellIndex& cells);
+  Mark MarkAt(const HullSpace& hull, const Eigen::Vector3d& from, const CellIndex& cells);
   void Flood(const HullSpace& hull, const Place& from, int stride, Mark reached);
 
   PathCost cost_;

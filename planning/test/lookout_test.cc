@@ -116,7 +116,7 @@ TEST_F(Survey, ClosedIsWhatEnclosesTheVehicleOrTheGoal) {
 }
 
 // A dead end that is larger than the window: what was seen of it on the way in counts on the way out.
-TEST_F(Survey, TheFarPotentialKnowsWhatIsOutOfTheWindow) {
+TEST_F(Survey, TheFarPathKnowsWhatIsOutOfTheWindow) {
   space_.ceiling = 4.0;
   const Eigen::Vector3d goal = at_ + Eigen::Vector3d(20.0, 0.0, 0.0);
   const auto build = [&](double shift) {  // the same walls in a window around another place
