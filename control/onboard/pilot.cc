@@ -110,7 +110,8 @@ void Pilot::StepMission(const OwnState& own, const estimation::PadFilter& filter
     recent_error_ = {};
     meets_vehicle_at_.reset();
   }
-  recent_error_.Note(t, (parts_.planner->Reference(t).p_WB - vehicle.p_WB).norm());
+  const planning::FlatState reference = parts_.planner->Reference(t);
+  recent_error_.Note(t, (reference.p_WB - vehicle.p_WB).norm());
   MissionInputs inputs;
   inputs.t = t;
   inputs.pad_available = KnowsTarget(filter);
@@ -121,7 +122,7 @@ void Pilot::StepMission(const OwnState& own, const estimation::PadFilter& filter
     inputs.height = vehicle.p_WB.z() - model_.foot_depth - pad.p_WP.z();
     inputs.foot_drop = FootDrop(model_, vehicle.q_WB);
     inputs.horizontal_speed = (vehicle.v_WB - pad.v_WP).head<2>().norm();
-    inputs.sink_rate = pad.v_WP.z() - vehicle.v_WB.z();
+    inputs.sink_rate = pad.v_WP.z() - std::min(vehicle.v_WB.z(), reference.v_WB.z());
   }
   foot_height_ = inputs.height;
   inputs.lean = LeanUnder(model_.HoverThrust(), disturbance().force_W);
@@ -161,7 +162,7 @@ void Pilot::StepMission(const OwnState& own, const estimation::PadFilter& filter
   at_deck_ = inputs.pad_available && !to_goal() &&
              std::abs(foot_height_) <= parameters_.contact_height &&
              inputs.horizontal_distance <= parameters_.contact_distance;
-  const double off = (parts_.planner->Reference(t).p_WB - vehicle.p_WB).head<2>().norm();
+  const double off = (reference.p_WB - vehicle.p_WB).head<2>().norm();
   blown_off_ = at_deck_ && !landing && (blown_off_ || off > kBlownOff);
   settling_.Note(t, at_deck_ && foot_force > kTouchForce, landing);
 
@@ -230,7 +231,7 @@ const planning::ReplanResult* Pilot::Replan(const estimation::VehicleState& vehi
   const bool lands_as_wanted =
       to_contact && kept && lands_ && result.reason != planning::ReplanReason::kInvalidInput;
   at_goal_ = result.reason == planning::ReplanReason::kAtGoal;
-  rests_ = !wants_plan && result.status == planning::ReplanStatus::kHolding;
+  rests_ = result.status == planning::ReplanStatus::kHolding;
   out_of_reach_ = result.reason == planning::ReplanReason::kPadUnreachable;
   last_planned_ = result.status == planning::ReplanStatus::kPlanned || at_goal_ || lands_as_wanted;
   has_plan_ = last_planned_ || kept;
