@@ -73,5 +73,27 @@ TEST(Goal, IsFlownToAroundAWall) {
   }
 }
 
+// The terms that ask for a way down to a deck, and for one that sees it, say nothing of a goal.
+TEST(Goal, IsNotApproachedFromAbove) {
+  const OccupancyMap map = ObservedMap();
+  const GoalAt goal({1.0, 0.5, 1.5});
+  ReplannerOptions options;
+  for (const char* name : {"approach_corridor", "pad_visibility"}) {
+    options.problem.settings.push_back({name, 300.0, std::nullopt, {}});
+  }
+  Replanner replanner(options, solvers::StandardBackends());
+  ReplanInput input;
+  input.t_start = 0.02;
+  input.vehicle.p_WB = {-1.0, 0.0, 1.5};
+  input.pad = &goal;
+  input.endpoint.height = 0.0;
+  replanner.CommitHover(input.vehicle.p_WB, 0.0);
+  const ReplanResult& plan = replanner.Replan(input, map);
+  ASSERT_EQ(plan.status, ReplanStatus::kPlanned) << Explain(plan.reason);
+  for (double t = plan.curve.t0(); t < plan.curve.t_end(); t += 0.05) {
+    EXPECT_NEAR(plan.curve.Position(t).z(), 1.5, 1e-6) << t;
+  }
+}
+
 }  // namespace
 }  // namespace touchdown::planning

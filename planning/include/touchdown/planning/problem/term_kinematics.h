@@ -78,7 +78,7 @@ struct LastKnots {
   void Update(const LandingContext& context, double span) {
     const double from = std::ceil(context.segments - span / context.interval);
     first = static_cast<int>(std::clamp(from, 1.0, static_cast<double>(context.segments)));
-    count = context.segments - first;
+    count = context.pad->has_deck() ? context.segments - first : 0;
   }
 };
 
