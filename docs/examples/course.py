@@ -28,4 +28,6 @@ def main(seed):
         print(f"    - {{centre: [{x:.2f}, {y:.2f}], size: [{sides}]}}")
 
 
+if len(sys.argv) != 2:
+    sys.exit("course.py: which seed? For example: python3 docs/examples/course.py 1 > out/course.yaml")
 main(int(sys.argv[1]))

@@ -41,11 +41,18 @@ std::string QuestionText(const SolvedStep& solved) {
     text += fmt::format("  wanted     rest, {:.2f} m higher\n", *asked.request.rest_climb);
   } else {
     const estimation::PadState& pad = solved.pad.front();
-    text += fmt::format("  pad        p {} m, v {} m/s, predicted by {}\n", Vector(pad.p_WP),
-                        Vector(pad.v_WP), solved.scenario.pad.prediction);
+    const bool to_goal = solved.scenario.task == TaskKind::kGoTo;
+    if (!to_goal) {
+      text += fmt::format("  pad        p {} m, v {} m/s, predicted by {}\n", Vector(pad.p_WP),
+                          Vector(pad.v_WP), solved.scenario.pad.prediction);
+    }
     if (input.look_from_W) {
       text += fmt::format("  wanted     rest at {} m, to look from there\n",
                           Vector(*input.look_from_W));
+      return text + CommittedBefore(asked, input.t_start);
+    }
+    if (to_goal) {
+      text += fmt::format("  wanted     rest at the goal {} m\n", Vector(pad.p_WP));
       return text + CommittedBefore(asked, input.t_start);
     }
     const planning::EndpointTarget& end = input.endpoint;
