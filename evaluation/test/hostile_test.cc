@@ -392,6 +392,18 @@ TEST(HostileFlightTest, AVehicleThatIsShutInStandsAndSaysWhy) {
   EXPECT_NEAR(waited.simulated_s, 10.0, 0.01);
 }
 
+// 4 cm above the deck it leant a little too far, gave up, touched in spite of the climb, and bounced off.
+TEST(HostileFlightTest, AClimbThatComesTooLateIsNotBegun) {
+  HostileOptions options;
+  options.share_beyond = 0.0;
+  options.seed = 64106;
+  options.families = {"below",     "clearing", "niche",      "garage",  "limbo",
+                      "wide_wall", "far",      "two_floors", "skylight"};
+  const HostileFlight flight = DrawHostileFlight(options, 152, kRegistries);
+  const TrialResult result = RunTrial(flight.trial.scenario, flight.trial.seed, kRegistries);
+  EXPECT_TRUE(result.landed()) << result.detail;
+}
+
 class HostileFamilyFlight : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(HostileFamilyFlight, EndsInAnOutcome) {
