@@ -113,7 +113,8 @@ DerivativeBounds BoundDerivatives(const UniformBspline& curve, const Eigen::Vect
   const double h = curve.interval();
   DerivativeBounds bounds;
   // The specific thrust f = a + g e_z - pull is linear on a segment, so f x j is constant there.
-  // The axis turns with |f x j| / |f|^2: fastest where f is shortest.
+  // The axis turns with |f x j| / |f|^2: fastest where f is shortest. Rotors at less than the weight have as much less
+  // moment to turn it.
   const Eigen::Vector3d hover_W = estimation::kGravity * Eigen::Vector3d::UnitZ() - pull_W;
   SplineState from = curve.AtKnot(0);
   double speed2 = from.v.squaredNorm(), acceleration2 = from.a.squaredNorm();
@@ -130,7 +131,8 @@ DerivativeBounds BoundDerivatives(const UniformBspline& curve, const Eigen::Vect
     if (turn != 0.0) {
       const double nearest = std::clamp(-thrust.dot(change) / change.squaredNorm(), 0.0, 1.0);
       const double least2 = (thrust + nearest * change).squaredNorm();
-      bounds.body_rate = std::max(bounds.body_rate, turn / least2);
+      const double weaker = std::max(1.0, estimation::kGravity / std::sqrt(least2));
+      bounds.body_rate = std::max(bounds.body_rate, turn / least2 * weaker);
     }
     from = to;
   }

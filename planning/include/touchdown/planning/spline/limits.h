@@ -12,8 +12,8 @@ struct Limits {
   /// Factor on the acceleration for stops in observed space: in wind the tracking law tilts farther
   /// for them than plans do.
   double braking_factor = 1.0;
-  /// Of the thrust axis of a vehicle that flies the curve exactly [rad/s]. If it turns faster, the attitude cannot
-  /// follow, and overshoots far.
+  /// On DerivativeBounds::body_rate [rad/s]. If the thrust axis turns faster, the attitude cannot follow, and overshoots
+  /// far.
   double body_rate = 4.0;
   /// A steady force over the mass that acts beside gravity: the thrust axis leans against it too [m/s^2].
   Eigen::Vector3d pull_W = Eigen::Vector3d::Zero();

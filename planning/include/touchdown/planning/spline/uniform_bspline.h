@@ -85,7 +85,8 @@ class UniformBspline {
 struct DerivativeBounds {
   double speed = 0.0;         ///< [m/s]
   double acceleration = 0.0;  ///< [m/s^2]
-  /// Of the thrust axis of a vehicle that flies it exactly, against the pull [rad/s].
+  /// Of the thrust axis of a vehicle that flies it exactly, against the pull; where the thrust is less than the weight,
+  /// as many times more: rotors that push less turn it less [rad/s].
   double body_rate = 0.0;
 };
 /// @param pull_W a steady force over the mass that acts beside gravity [m/s^2].
