@@ -260,7 +260,10 @@ class Scout::Impl {
     } else {
       return;
     }
-    if (look_ == nullptr) struck_.clear();  // all were tried: again
+    if (look_ != nullptr) return;
+    struck_.clear();  // all were tried: again
+    look_ = lookout_.Around(now.p_WB, yaw);
+    reason_ = "begins: around, since no place to look from is reached";
   }
 
   void NoteOpen() {

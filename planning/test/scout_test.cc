@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <numbers>
 
 #include <gtest/gtest.h>
 
@@ -105,6 +106,19 @@ TEST_F(Scouted, NeverWithoutACameraOrWhereItMayNot) {
 TEST_F(Scouted, NotInFlightWhereAllThatIsNeededWasSeen) {
   map_.MarkRestFree();
   for (int i = 0; i < 100; ++i) EXPECT_FALSE(Step({0.0, i / 10 % 2 == 0 ? 1.0 : -1.0, 0.0}));
+}
+
+// In a gust the margins leave no way out of what was seen around the start, and what is needed is above and below what
+// the camera sees from there: it turns on the spot.
+TEST_F(Scouted, WhoReachesNoPlaceLooksAround) {
+  cameras_[0].reach = 0.05;
+  for (int quarter = 1; quarter <= 5; ++quarter) {
+    ASSERT_LT(FirstLook(), 100.0);
+    EXPECT_EQ(look_->p_WB, p_);
+    EXPECT_NEAR(estimation::WrapAngle(look_->yaw - yaw_), 0.5 * std::numbers::pi, 1e-9);
+    GoThere();
+    for (int i = 0; Step(); ++i) ASSERT_LT(i, 10) << "three images";
+  }
 }
 
 // It waited here, and comes down now.
