@@ -10,6 +10,7 @@ const Eigen::Vector3d kNoShift(0.0, 0.0, 0.0);
 constexpr double kTurn = 0.2;        // until a climb is flown [s] ...
 constexpr double kRises = 4.0;       // ... and what it ends sinking with [m/s^2]
 constexpr double kNearMiddle = 0.2;  // of a deck, where a contact is not put off [m]
+constexpr double kChange = 0.3;  // in so long the pad changed as much as it did since the plan [s]
 
 /// A climb that begins now touches the deck, too, and bounces off. A vehicle that a gust drives off it does not.
 bool TouchesAnyway(const FallbackFacts& facts) {
@@ -24,6 +25,15 @@ bool TouchesAnyway(const FallbackFacts& facts) {
   const bool touches = sinks > 0.0 && IsSoft(v_PB, 1.0) &&
                        feet - kFootLowers < sinks * (kTurn + 0.5 * sinks / kRises);
   return touches && Fallback::LookAtLanding(committed, facts.t0, hull) == Fallback::Landing::kHolds;
+}
+
+/// The plan was to end with the pad's velocity. If that goes on changing as it did since, contact will be too hard.
+bool PadTurnsAway(const FlightPair& committed, double t0, const HullSpace& hull) {
+  const auto v_PB = [&](double t) -> Eigen::Vector2d {
+    return (committed.curve.EvaluateOnward(t).v_WB - hull.pad->MeanAt(t).v_WP).head<2>();
+  };
+  const double t = ContactTime(committed.curve, t0, hull);
+  return (v_PB(t) + (t - t0) / kChange * v_PB(committed.curve.t_end())).norm() > kSoftDrift;
 }
 
 }  // namespace
@@ -47,14 +57,17 @@ Fallen FallbackLadder::StepDown(const FallbackFacts& facts, ReplanResult* result
   const HullSpace& hull = *facts.hull;
   const double t0 = facts.t0;
   const Fallback::Landing landing = Fallback::LookAtLanding(committed, t0, hull);
-  if (!result->from_odometry && landing == Fallback::Landing::kHolds &&
-      LandsSoon(committed, t0, facts.endpoint, hull)) {
+  const bool lands_soon = !result->from_odometry && landing == Fallback::Landing::kHolds &&
+                          LandsSoon(committed, t0, facts.endpoint, hull);
+  const bool turns_away =
+      lands_soon && !facts.endpoint.at_rest && PadTurnsAway(committed, t0, hull);
+  if (lands_soon && !turns_away) {
     Fallback::FlyStop(committed, t0, hull, result);
     return {.commits = false, .on_plan = facts.planned};
   }
   const bool at_rest = !result->from_odometry && Fallback::AtRest(committed, t0, facts.planned);
   const bool on_plan = facts.planned && !result->from_odometry && !at_rest;
-  if (on_plan && GoesOn(facts, result)) {
+  if (on_plan && !turns_away && GoesOn(facts, result)) {
     result->status = ReplanStatus::kKept;
     return {.commits = true, .on_plan = true};
   }

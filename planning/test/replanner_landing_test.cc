@@ -110,6 +110,37 @@ TEST(ReplannerLanding, AContactThatIsNearIsNotPutOff) {
   EXPECT_EQ(ask(t + 0.1, 0.3).status, ReplanStatus::kPlanned) << "it would miss the deck's middle";
 }
 
+// With little acceleration no plan meets a pad that brakes. The old one would meet it softly as it drives now, but not
+// as it will by then.
+TEST(ReplannerLanding, ADeckThatGoesOnTurningAwayIsLeftInTime) {
+  const OccupancyMap map = ObservedMap();
+  ReplannerOptions options = Options(ArrivalMode::kFixed);
+  options.deck_half_size = 0.5;
+  options.limits.acceleration = 1.0;
+  for (const double slower : {0.1, 0.3}) {
+    Replanner replanner(options, solvers::StandardBackends());
+    FlyAlong({-0.6, 0.0, kDeck + 1.2}, {0.5, 0.0, 0.0}, &replanner);
+    const auto ask = [&](double t, double by) {
+      const ArcPad pad({by * t, 0.0, kDeck}, 0.5 - by, 0.0, 0.0);
+      const FlatState at = replanner.Reference(t);
+      ReplanInput input = Input(at.p_WB, pad, t);
+      input.vehicle.v_WB = at.v_WB;
+      input.endpoint = {.t_reference = t, .height = 0.165, .height_floor = 0.165};
+      input.endpoint.arrival_sink = 0.3;
+      return replanner.Replan(input, map);
+    };
+    double t = 0.0;
+    for (; t == 0.0 || replanner.state().next.curve.t_end() - t > 0.5; t += 0.1) {
+      ASSERT_EQ(ask(t, 0.0).status, ReplanStatus::kPlanned) << t;
+      ASSERT_LT(t, 10.0);
+    }
+    ASSERT_TRUE(replanner.state().next.Lands());
+    const ReplanResult result = ask(t, slower);
+    EXPECT_EQ(result.Lands(), slower < 0.2) << Explain(result.reason);
+    EXPECT_TRUE(result.proven);
+  }
+}
+
 TEST_F(LastStretch, ItsPairLands) {
   EXPECT_TRUE(landing_.Lands());
   EXPECT_GT(left(), 0.4);
