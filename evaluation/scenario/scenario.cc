@@ -172,9 +172,14 @@ class Reader {
 void ApplyOverride(const std::string& text, const Keys& keys, ScenarioSource* source) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || equals == 0) {
-    throw BadInput(fmt::format("--set {}: write KEY=VALUE.", text));
+    throw BadInput(fmt::format("--set {}: write KEY=VALUE, without a space.", text));
   }
   const std::string name = text.substr(0, equals);
+  const std::size_t bracket = name.find('[');
+  if (bracket != std::string::npos) {
+    throw BadInput(fmt::format("--set {}: a list is set as a whole: {}=[...].", text,
+                               name.substr(0, bracket)));
+  }
   const std::string file = "--set " + text;
   const YAML::Node value = ParseYaml(text.substr(equals + 1), file, false);
   Where where;

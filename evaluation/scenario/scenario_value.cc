@@ -7,6 +7,8 @@
 #include <charconv>
 #include <cmath>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -17,10 +19,16 @@
 namespace touchdown::evaluation {
 namespace {
 
+constexpr std::size_t kMostShown = 60;  // of a list [characters]
+
 std::string Shown(const YAML::Node& node) {
   if (!node || node.IsNull()) return "empty";
   if (node.IsScalar()) return "'" + node.Scalar() + "'";
-  return node.IsSequence() ? "a list" : "a map";
+  if (!node.IsSequence()) return "a map";
+  std::vector<std::string> items;
+  for (const YAML::Node& item : node) items.push_back(item.IsScalar() ? item.Scalar() : "...");
+  const std::string list = fmt::format("[{}]", fmt::join(items, ", "));
+  return list.size() > kMostShown ? fmt::format("a list of {}", items.size()) : list;
 }
 
 std::optional<double> Number(const YAML::Node& node) {

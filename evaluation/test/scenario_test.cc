@@ -426,6 +426,10 @@ TEST_F(ScenarioTest, OverridesGoThroughTheSameTable) {
               AllOf(HasSubstr("--set pad.speed=11"), HasSubstr("[0.01, 10] m/s")));
   EXPECT_THAT(Refusal("seed: 1\n", {"nonsense=9"}), HasSubstr("unknown key nonsense"));
   EXPECT_THAT(Refusal("seed: 1\n", {"nonsense"}), HasSubstr("write KEY=VALUE"));
+  EXPECT_THAT(Refusal("seed: 1\n", {"depth.cameras[0].rate=5"}),
+              HasSubstr("a list is set as a whole: depth.cameras=[...]"));
+  EXPECT_THAT(Refusal("seed: 1\n", {"start.position=[1, 2]"}),
+              HasSubstr("must be a list of 3 numbers in [-500, 500] m, not [1, 2]"));
   // There is no line to name.
   EXPECT_THAT(Refusal("seed: 1\n", {"pad.start=[1"}), HasSubstr("--set pad.start=[1: end of "));
   EXPECT_THAT(Refusal("seed: 1\n", {"pad=3"}), HasSubstr("--set pad=3: pad must be a map"));
