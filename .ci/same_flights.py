@@ -48,7 +48,7 @@ OTHERS = [
     ["study", "hostile", "--flights", "6", "--seed", "3"],
     ["compare", "--problems", "3", "--backends", "banded,lbfgs", "--repeats", "1"],
 ]
-TIMES = ("_ms", "cpu", "wall", "realtime", "seconds", "deadline")
+TIMES = ("_ms", "ms_", "cpu", "wall", "realtime", "deadline", "shares", "load_")
 
 
 def without_times(value):
