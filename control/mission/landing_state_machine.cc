@@ -137,8 +137,7 @@ void DecideToWait(const MissionInputs& in, const MissionParameters& p, const Con
   s.waits_above = !now.may_land && (s.waits_above || due || low);
 }
 
-Guidance GuidanceOf(const MissionState& s, const MissionInputs& in, const Conditions& now,
-                    const MissionParameters& p) {
+Guidance GuidanceOf(const MissionState& s, const MissionInputs& in, const Conditions& now) {
   switch (s.mode) {
     case MissionMode::kDisarmed:
       return Guidance::kIdle;
@@ -146,12 +145,8 @@ Guidance GuidanceOf(const MissionState& s, const MissionInputs& in, const Condit
       return TouchesDown(s, in) ? Guidance::kTouchDown : Guidance::kFollowPad;
     case MissionMode::kLanding:
       return Planned(in) ? Guidance::kTouchDown : Guidance::kFollowPad;
-    case MissionMode::kGoAround: {
-      // By then a climb has begun, which goes on while no plan is found.
-      const bool climbs = s.t > s.mode_since + p.turn_time;
-      const bool plans = now.pad_good && (climbs || in.plan_failed_for <= 0.0);
-      return plans ? Guidance::kFollowPad : Guidance::kClimb;
-    }
+    case MissionMode::kGoAround:
+      return now.pad_good && in.plan_failed_for <= 0.0 ? Guidance::kFollowPad : Guidance::kClimb;
     default:
       return Guidance::kHoldPosition;
   }
@@ -211,8 +206,7 @@ MissionStep Step(const MissionState& state, const MissionInputs& inputs,
     hold = DescentHold::kAbove;
   }
   if (inputs.looks) hold = DescentHold::kLook;
-  return {s,
-          OutputsOf(s, transition.reason, hold, now.gate, GuidanceOf(s, inputs, now, parameters))};
+  return {s, OutputsOf(s, transition.reason, hold, now.gate, GuidanceOf(s, inputs, now))};
 }
 
 }  // namespace touchdown::control

@@ -122,7 +122,11 @@ void Pilot::StepMission(const OwnState& own, const estimation::PadFilter& filter
     inputs.height = vehicle.p_WB.z() - model_.foot_depth - pad.p_WP.z();
     inputs.foot_drop = FootDrop(model_, vehicle.q_WB);
     inputs.horizontal_speed = (vehicle.v_WB - pad.v_WP).head<2>().norm();
-    inputs.sink_rate = pad.v_WP.z() - std::min(vehicle.v_WB.z(), reference.v_WB.z());
+    inputs.sink_rate = pad.v_WP.z() - vehicle.v_WB.z();
+    // A vehicle that sinks follows its reference until a climb begins.
+    if (inputs.sink_rate > 0.0) {
+      inputs.sink_rate = std::max(inputs.sink_rate, pad.v_WP.z() - reference.v_WB.z());
+    }
   }
   foot_height_ = inputs.height;
   inputs.lean = LeanUnder(model_.HoverThrust(), disturbance().force_W);
@@ -231,7 +235,7 @@ const planning::ReplanResult* Pilot::Replan(const estimation::VehicleState& vehi
   const bool lands_as_wanted =
       to_contact && kept && lands_ && result.reason != planning::ReplanReason::kInvalidInput;
   at_goal_ = result.reason == planning::ReplanReason::kAtGoal;
-  rests_ = result.status == planning::ReplanStatus::kHolding;
+  rests_ = !wants_plan && result.status == planning::ReplanStatus::kHolding;
   out_of_reach_ = result.reason == planning::ReplanReason::kPadUnreachable;
   last_planned_ = result.status == planning::ReplanStatus::kPlanned || at_goal_ || lands_as_wanted;
   has_plan_ = last_planned_ || kept;

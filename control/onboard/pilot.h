@@ -146,7 +146,7 @@ class Pilot {
   bool idle_ = false;
   bool out_of_reach_ = false;                      ///< the pad drives away: no look would help
   bool at_goal_ = false;                           ///< the last step made no plan: the goal is near
-  bool rests_ = false;                             ///< and nothing else is certified
+  bool rests_ = false;                             ///< that was wanted, and is so
   const planning::UniformBspline* way_ = nullptr;  // of the latest plan, the planner's own
   bool lands_ = false;                             // what is flown ends in contact
   double own_position_sigma_ = 0.0, own_attitude_sigma_ = 0.0;

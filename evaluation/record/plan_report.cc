@@ -42,19 +42,15 @@ std::string QuestionText(const SolvedStep& solved) {
   } else {
     const estimation::PadState& pad = solved.pad.front();
     const bool to_goal = solved.scenario.task == TaskKind::kGoTo;
-    if (!to_goal) {
-      text += fmt::format("  pad        p {} m, v {} m/s, predicted by {}\n", Vector(pad.p_WP),
-                          Vector(pad.v_WP), solved.scenario.pad.prediction);
-    }
+    text += fmt::format("  {:9}  p {} m, v {} m/s", to_goal ? "goal" : "pad", Vector(pad.p_WP),
+                        Vector(pad.v_WP));
+    text += to_goal ? "\n" : fmt::format(", predicted by {}\n", solved.scenario.pad.prediction);
     if (input.look_from_W) {
       text += fmt::format("  wanted     rest at {} m, to look from there\n",
                           Vector(*input.look_from_W));
       return text + CommittedBefore(asked, input.t_start);
     }
-    if (to_goal) {
-      text += fmt::format("  wanted     rest at the goal {} m\n", Vector(pad.p_WP));
-      return text + CommittedBefore(asked, input.t_start);
-    }
+    if (to_goal) return text + CommittedBefore(asked, input.t_start);
     const planning::EndpointTarget& end = input.endpoint;
     text +=
         end.touches()

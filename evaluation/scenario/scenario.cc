@@ -176,7 +176,7 @@ void ApplyOverride(const std::string& text, const Keys& keys, ScenarioSource* so
   }
   const std::string name = text.substr(0, equals);
   const std::size_t bracket = name.find('[');
-  if (bracket != std::string::npos) {
+  if (bracket != std::string::npos && bracket > 0) {
     throw BadInput(fmt::format("--set {}: a list is set as a whole: {}=[...].", text,
                                name.substr(0, bracket)));
   }

@@ -28,7 +28,7 @@ TEST(ArrivingFlight, OverAPadThatStands) {
     TrialRecord record;
     const TrialResult result = Fly(std::string(kOverPad) + "}", seed, &record);
     ASSERT_TRUE(result.landed()) << result.detail;
-    EXPECT_LT(result.touchdown->t, 12.0);
+    EXPECT_LT(result.touchdown->t, 15.0);
     EXPECT_EQ(result.safety->uncertified_steps, 0);
     looked += std::any_of(record.plans.begin(), record.plans.end(), [](const auto& plan) {
       return plan.request.input.look_from_W.has_value();

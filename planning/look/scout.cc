@@ -131,12 +131,13 @@ class Scout::Impl {
   bool AtGoal() const { return (was_.back().goal_W - was_.back().p_WB).norm() < kAtGoal; }
 
   /// For as long as a question takes.
-  bool Stands() const {
+  bool Stays() const {
     const Was& now = was_.back();
-    return IsStill() && IsLongAgo(was_.front(), now, true) &&
+    return IsLongAgo(was_.front(), now, true) &&
            std::all_of(was_.begin(), was_.end(),
                        [&](const Was& was) { return (was.p_WB - now.p_WB).norm() < kNearer; });
   }
+  bool Stands() const { return IsStill() && Stays(); }
 
   /// But for the last that is.
   void ForgetLongAgo(const Was& now, bool whatever_images) {
@@ -262,6 +263,7 @@ class Scout::Impl {
     }
     if (look_ != nullptr) return;
     struck_.clear();  // all were tried: again
+    if (!needs || !Stays()) return;
     look_ = lookout_.Around(now.p_WB, yaw);
     reason_ = "begins: around, since no place to look from is reached";
   }

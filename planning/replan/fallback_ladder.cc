@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "planning/replan/fallback_ladder.h"
 
+#include <algorithm>
+
 namespace touchdown::planning {
 
 namespace {
@@ -10,7 +12,8 @@ const Eigen::Vector3d kNoShift(0.0, 0.0, 0.0);
 constexpr double kTurn = 0.2;        // until a climb is flown [s] ...
 constexpr double kRises = 4.0;       // ... and what it ends sinking with [m/s^2]
 constexpr double kNearMiddle = 0.2;  // of a deck, where a contact is not put off [m]
-constexpr double kChange = 0.3;  // in so long the pad changed as much as it did since the plan [s]
+// Of a plan: how much less a younger one is off its pad's velocity is mostly noise.
+constexpr double kLeastAge = 0.3;  // [s]
 
 /// A climb that begins now touches the deck, too, and bounces off. A vehicle that a gust drives off it does not.
 bool TouchesAnyway(const FallbackFacts& facts) {
@@ -27,13 +30,15 @@ bool TouchesAnyway(const FallbackFacts& facts) {
   return touches && Fallback::LookAtLanding(committed, facts.t0, hull) == Fallback::Landing::kHolds;
 }
 
-/// The plan was to end with the pad's velocity. If that goes on changing as it did since, contact will be too hard.
+/// The plan was made to end with the pad's velocity. If that goes on changing as it did since, contact will be too hard.
 bool PadTurnsAway(const FlightPair& committed, double t0, const HullSpace& hull) {
   const auto v_PB = [&](double t) -> Eigen::Vector2d {
     return (committed.curve.EvaluateOnward(t).v_WB - hull.pad->MeanAt(t).v_WP).head<2>();
   };
   const double t = ContactTime(committed.curve, t0, hull);
-  return (v_PB(t) + (t - t0) / kChange * v_PB(committed.curve.t_end())).norm() > kSoftDrift;
+  const double age = std::max(kLeastAge, t0 - committed.curve.t0());
+  return (v_PB(t) + (t - t0) / age * v_PB(committed.curve.t_end())).norm() >
+         kLandingRoom * kSoftDrift;
 }
 
 }  // namespace
@@ -59,8 +64,8 @@ Fallen FallbackLadder::StepDown(const FallbackFacts& facts, ReplanResult* result
   const Fallback::Landing landing = Fallback::LookAtLanding(committed, t0, hull);
   const bool lands_soon = !result->from_odometry && landing == Fallback::Landing::kHolds &&
                           LandsSoon(committed, t0, facts.endpoint, hull);
-  const bool turns_away =
-      lands_soon && !facts.endpoint.at_rest && PadTurnsAway(committed, t0, hull);
+  const bool turns_away = lands_soon && !facts.endpoint.at_rest && !TouchesAnyway(facts) &&
+                          PadTurnsAway(committed, t0, hull);
   if (lands_soon && !turns_away) {
     Fallback::FlyStop(committed, t0, hull, result);
     return {.commits = false, .on_plan = facts.planned};
@@ -97,7 +102,7 @@ Fallen FallbackLadder::StepDown(const FallbackFacts& facts, ReplanResult* result
     return {.commits = true};
   }
   Fallback::FlyStop(committed, t0, hull, result);
-  return {};
+  return {.commits = false, .on_plan = turns_away && facts.planned};
 }
 
 Fallen FallbackLadder::Rest(const FallbackFacts& facts, double climb, ReplanResult* result) {

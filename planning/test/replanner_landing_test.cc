@@ -137,6 +137,7 @@ TEST(ReplannerLanding, ADeckThatGoesOnTurningAwayIsLeftInTime) {
     ASSERT_TRUE(replanner.state().next.Lands());
     const ReplanResult result = ask(t, slower);
     EXPECT_EQ(result.Lands(), slower < 0.2) << Explain(result.reason);
+    EXPECT_EQ(result.status == ReplanStatus::kBraking, slower > 0.2);
     EXPECT_TRUE(result.proven);
   }
 }

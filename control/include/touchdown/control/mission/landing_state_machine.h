@@ -154,8 +154,8 @@ struct MissionInputs {
   double height = 0.0;               ///< feet above the deck, estimated [m]
   double foot_drop = 0.0;            ///< the lowest foot of a leaning vehicle, below `height` [m]
   double horizontal_speed = 0.0;     ///< relative to the pad, estimated [m/s]
-  double sink_rate =
-      0.0;  ///< towards the deck, the vehicle's or its reference's, the greater [m/s]
+  /// Towards the deck, estimated; of the reference, if that sinks faster [m/s].
+  double sink_rate = 0.0;
   double pad_sigma = 0.0;            ///< horizontal 1 sigma of the pad's position [m], may be inf
   /// The same, predicted for ContactIn from now, without further measurements; may be inf.
   double contact_sigma = std::numeric_limits<double>::infinity();
@@ -169,7 +169,7 @@ struct MissionInputs {
   bool lands =
       false;  ///< what is flown ends in contact, whatever the mode: nothing else was certified
   bool at_goal = false;  ///< the planner takes what was commanded as reached: no use to wait for it
-  bool rests = false;    ///< and nothing else is certified: a climb comes no higher
+  bool rests = false;    ///< it was to rest, and does: a climb comes no higher
   double plan_failed_for = 0.0;  ///< time since planning last succeeded, 0 if it did [s]
   /// Until the committed plan touches the deck [s], negative when that is overdue; infinite where it
   /// does not lead there.

@@ -23,7 +23,7 @@ struct Certificate {
   /// The trajectory committed before is flown on. Its bounds and its clearance are not measured again, and are NaN
   /// here. stops_in_observed_space says whether it was proven then and still holds.
   bool earlier = false;
-  /// Hull bounds over the curve [m/s], [m/s^2], and of a vehicle that flies it exactly [rad/s].
+  /// DerivativeBounds over the curve [m/s], [m/s^2], [rad/s].
   double speed_bound = 0.0;
   double acceleration_bound = 0.0;
   double body_rate_bound = 0.0;

@@ -70,7 +70,7 @@ Triple<T> PadPosition(const estimation::PadPrediction& pad, const T& t) {
 }
 
 /// The inner knots k = 1..M-1 in the last `span` seconds before arrival, by the interval of the
-/// guess. They do not change during a solve. Windows of three blocks.
+/// guess; none where there is no deck. They do not change during a solve. Windows of three blocks.
 struct LastKnots {
   int first = 1;
   int count = 0;
