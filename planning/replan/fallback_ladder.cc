@@ -64,8 +64,8 @@ Fallen FallbackLadder::StepDown(const FallbackFacts& facts, ReplanResult* result
   const Fallback::Landing landing = Fallback::LookAtLanding(committed, t0, hull);
   const bool lands_soon = !result->from_odometry && landing == Fallback::Landing::kHolds &&
                           LandsSoon(committed, t0, facts.endpoint, hull);
-  const bool turns_away = lands_soon && !facts.endpoint.at_rest && !TouchesAnyway(facts) &&
-                          PadTurnsAway(committed, t0, hull);
+  const bool turns_away = lands_soon && !facts.endpoint.at_rest &&
+                          PadTurnsAway(committed, t0, hull) && !TouchesAnyway(facts);
   if (lands_soon && !turns_away) {
     Fallback::FlyStop(committed, t0, hull, result);
     return {.commits = false, .on_plan = facts.planned};
