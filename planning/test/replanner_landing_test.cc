@@ -14,6 +14,17 @@ namespace {
 
 constexpr double kDeck = 0.45;  // its height [m]
 
+/// A request to contact from where the replanner's reference is.
+ReplanInput ToContact(const Replanner& replanner, const estimation::PadPrediction& pad, double t,
+                      double height = 0.165, double sink = 0.3) {
+  const FlatState at = replanner.Reference(t);
+  ReplanInput input = Input(at.p_WB, pad, t);
+  input.vehicle.v_WB = at.v_WB;
+  input.endpoint = {.t_reference = t, .height = height, .height_floor = height};
+  input.endpoint.arrival_sink = sink;
+  return input;
+}
+
 /// Over a deck that drives along x, planning to contact until shortly before it.
 class LastStretch : public ::testing::Test {
  protected:
@@ -33,14 +44,7 @@ class LastStretch : public ::testing::Test {
   double left() const { return replanner_->state().next.curve.t_end() - t_; }
 
   const ReplanResult& Ask(const estimation::PadPrediction& pad) {
-    const FlatState at = replanner_->Reference(t_);
-    ReplanInput input = Input(at.p_WB, pad, t_);
-    input.vehicle.v_WB = at.v_WB;
-    input.endpoint = {};
-    input.endpoint.t_reference = t_;
-    input.endpoint.height = input.endpoint.height_floor = 0.165;
-    input.endpoint.arrival_sink = 0.3;
-    return replanner_->Replan(input, map_);
+    return replanner_->Replan(ToContact(*replanner_, pad, t_), map_);
   }
 
   OccupancyMap map_;
@@ -60,11 +64,7 @@ TEST(ReplannerLanding, NothingIsKeptShortlyBeforeContact) {
   FlyAlong({-4.0, 0.0, kDeck + 1.2}, {0.5, 0.0, 0.0}, &replanner);
   int kept = 0, anew = 0;
   for (double t = 0.0; t == 0.0 || replanner.state().next.curve.t_end() - t > 1.0; t += 0.1) {
-    const FlatState at = replanner.Reference(t);
-    ReplanInput input = Input(at.p_WB, pad, t);
-    input.vehicle.v_WB = at.v_WB;
-    input.endpoint = {.t_reference = t, .height = 0.165, .height_floor = 0.165};
-    input.endpoint.arrival_sink = 0.3;
+    const ReplanInput input = ToContact(replanner, pad, t);
     const double left = replanner.state().next.curve.t_end() - input.t_start;
     const double looked = replanner.state().looked_t;
     ASSERT_EQ(replanner.Replan(input, map).status, ReplanStatus::kPlanned) << t;
@@ -89,12 +89,7 @@ TEST(ReplannerLanding, AContactThatIsNearIsNotPutOff) {
   FlyAlong({-0.6, 0.0, kDeck + 1.2}, {0.5, 0.0, 0.0}, &replanner);
   const auto ask = [&](double t, double off) {
     const ArcPad pad({0.0, off, kDeck}, 0.5, 0.0, 0.0);
-    const FlatState at = replanner.Reference(t);
-    ReplanInput input = Input(at.p_WB, pad, t);
-    input.vehicle.v_WB = at.v_WB;
-    input.endpoint = {.t_reference = t, .height = 0.28, .height_floor = 0.28};
-    input.endpoint.arrival_sink = 0.13;
-    return replanner.Replan(input, map);
+    return replanner.Replan(ToContact(replanner, pad, t, 0.28, 0.13), map);
   };
   double t = 0.0;
   for (; t == 0.0 || replanner.state().next.curve.t_end() - t > 0.6; t += 0.1) {
@@ -122,12 +117,7 @@ TEST(ReplannerLanding, ADeckThatGoesOnTurningAwayIsLeftInTime) {
     FlyAlong({-0.6, 0.0, kDeck + 1.2}, {0.5, 0.0, 0.0}, &replanner);
     const auto ask = [&](double t, double by) {
       const ArcPad pad({by * t, 0.0, kDeck}, 0.5 - by, 0.0, 0.0);
-      const FlatState at = replanner.Reference(t);
-      ReplanInput input = Input(at.p_WB, pad, t);
-      input.vehicle.v_WB = at.v_WB;
-      input.endpoint = {.t_reference = t, .height = 0.165, .height_floor = 0.165};
-      input.endpoint.arrival_sink = 0.3;
-      return replanner.Replan(input, map);
+      return replanner.Replan(ToContact(replanner, pad, t), map);
     };
     double t = 0.0;
     for (; t == 0.0 || replanner.state().next.curve.t_end() - t > 0.5; t += 0.1) {
