@@ -292,7 +292,7 @@ TEST(Program, ARecordReplacesNoOtherFile) {
 TEST(Program, AStepIsAskedAgainWithAnotherBudget) {
   const std::filesystem::path file = std::filesystem::path(::testing::TempDir()) / "budget.db";
   Call({"land", "forest", "--set", "timeout=1", "--record", file.c_str()});
-  const std::string step = file.string() + ":2";
+  const std::string step = file.string() + ":4";  // a plan that takes more than 1,000 units
   const Ran flown = Call({"plan", "--from", step.c_str()});
   EXPECT_THAT(flown.out, HasSubstr("the recorded answer, bit for bit")) << flown.err;
   const Ran less = Call({"plan", "--from", step.c_str(), "--set", "planning.max_work=1000"});
