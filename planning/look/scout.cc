@@ -227,10 +227,7 @@ class Scout::Impl {
     }
     if (lookout_.Closed(space, now.p_WB, now.goal_W)) {
       NoteNoWay();
-      if (turns_++ < kTurnsAround) {
-        look_ = lookout_.Around(now.p_WB, yaw);
-        reason_ = "begins: around, since no way is known";
-      }
+      if (turns_++ < kTurnsAround) LookAround(yaw, "begins: around, since no way is known");
       return;
     }
     NoteOpen();
@@ -264,8 +261,14 @@ class Scout::Impl {
     if (look_ != nullptr) return;
     struck_.clear();  // all were tried: again
     if (!needs || !Stays()) return;
-    look_ = lookout_.Around(now.p_WB, yaw);
-    reason_ = "begins: around, since no place to look from is reached";
+    LookAround(yaw, "begins: around, since no place to look from is reached");
+  }
+
+  /// On from where that ended last: in between it may have turned back to its goal.
+  void LookAround(double yaw, std::string_view reason) {
+    look_ = lookout_.Around(was_.back().p_WB, around_yaw_.value_or(yaw));
+    around_yaw_ = look_->from.yaw;
+    reason_ = reason;
   }
 
   void NoteOpen() {
@@ -422,6 +425,7 @@ class Scout::Impl {
   double most_detour_ = kDetour;
   Way way_ = Way::kPlanned;
   int turns_ = 0;                    // on the spot, since there is no way
+  std::optional<double> around_yaw_;  // to where it turned last on the spot
   bool doubts_ = false;              // of cells that are known to block
   bool prefers_wide_ = false;        // ways: it stood where the hull just fits
   bool up_ = false;                  // as high as it could climb, for that best

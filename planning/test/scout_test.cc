@@ -115,9 +115,11 @@ TEST_F(Scouted, WhoReachesNoPlaceLooksAround) {
   for (int quarter = 1; quarter <= 5; ++quarter) {
     ASSERT_LT(FirstLook(), 100.0);
     EXPECT_EQ(look_->p_WB, p_);
-    EXPECT_NEAR(estimation::WrapAngle(look_->yaw - yaw_), 0.5 * std::numbers::pi, 1e-9);
+    const double turned = 0.5 * std::numbers::pi * quarter;
+    EXPECT_NEAR(estimation::WrapAngle(look_->yaw - turned), 0.0, 1e-9);
     GoThere();
     for (int i = 0; Step(); ++i) ASSERT_LT(i, 10) << "three images";
+    yaw_ = 0.0;  // to its goal again, for as long as it does not look
   }
 }
 
