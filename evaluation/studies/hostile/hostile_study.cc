@@ -26,10 +26,10 @@
 namespace touchdown::evaluation {
 namespace {
 
-constexpr double kTimeout = 60.0;       // with every image [s]
+constexpr double kTimeout = 100.0;      // with every image [s]
 constexpr double kLongest = 600.0;      // that a scenario may last [s]
 constexpr double kCatchTime = 45.0;     // in which the pad must be caught [s]
-constexpr double kStandLimit = 15.0;    // a flight that stands is over [s]
+constexpr double kStandLimit = 15.0;    // a flight that stands is over, with every image [s]
 constexpr double kLaneHorizon = 150.0;  // of the first look at the lane: more than a round [s]
 constexpr int kWorlds = 300;            // that are drawn until one is free
 
@@ -61,10 +61,9 @@ void SuitConditions(const HostileOptions& options, Scenario* s) {
   if (!Sets(options, "wind.max") && s->wind.max > 0.0)
     s->wind.max = std::max(s->wind.max, s->wind.mean);
   if (Sets(options, "wind.direction_deg")) s->wind.direction_random = false;
-  if (!Sets(options, "timeout")) {
-    s->timeout = std::min(kLongest, std::ceil(kTimeout / std::max(1e-3, 1.0 - s->depth.drop)));
-  }
-  if (!Sets(options, "stand_limit")) s->stand_limit = kStandLimit;
+  const double longer = 1.0 / std::max(1e-3, 1.0 - s->depth.drop);
+  if (!Sets(options, "timeout")) s->timeout = std::min(kLongest, std::ceil(kTimeout * longer));
+  if (!Sets(options, "stand_limit")) s->stand_limit = std::min(kLongest, kStandLimit * longer);
 }
 
 // The part of a scenario that its world is made of; everything else stays.
