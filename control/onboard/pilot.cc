@@ -42,6 +42,7 @@ constexpr double kFlareSoftness = 0.8;    // ... to so many times its frequency 
 constexpr double kTouchForce = 0.2;       // on the feet: something holds them [N]
 constexpr double kLevelTimeInPull = 0.2;  // more level time in wind [s per m/s^2 of its force]
 constexpr double kSofterInPull = 0.05;    // contact in wind: 0.2 m/s from 7 m/s on [m/s per m/s^2]
+constexpr double kGustGrows = 0.5;        // for at most so long [s]
 constexpr double kMeasuredMargin = 1.2;   // a measured latency is flown with this factor
 constexpr double kAttitudeLag = 0.1;      // of the vehicle behind its plans [s]
 constexpr double kTurning = 0.8;  // and then it takes so long to turn away from the deck [s]
@@ -129,12 +130,12 @@ void Pilot::StepMission(const OwnState& own, const estimation::PadFilter& filter
     }
   }
   foot_height_ = inputs.height;
-  inputs.lean = LeanUnder(model_.HoverThrust(), disturbance().force_W);
   inputs.tag_age = to_goal() ? 0.0 : filter.TagAge(t);
   inputs.pad_sigma = to_goal() ? 0.0 : filter.PositionSigma(t);
   inputs.looks = looks_from_.has_value();
   inputs.descent = options_.descent;
   inputs.arrival_in = plan_end_t_ + level_time_ - t;
+  inputs.lean = LeanAtContact(inputs.arrival_in);
   const double contact_in = ContactIn(mission_state_, inputs, parameters_);
   if (std::isfinite(contact_in)) inputs.contact_sigma = filter.PositionSigma(t + contact_in);
   const estimation::OwnStatus status = own.Status(t);
@@ -262,6 +263,15 @@ double Pilot::TouchdownRate(const Eigen::Vector3d& pull_W) const {
   const double gusts = kSofterInPull * pull_W.head<2>().norm();
   const double least = std::min(parameters_.contact_rate, parameters_.touchdown_rate);
   return std::max(least, parameters_.touchdown_rate - gusts);
+}
+
+// What holding still there will take, if the wind goes on to change as it does now. A gust that grows in the last
+// half second leaves no time to climb.
+double Pilot::LeanAtContact(double arrival_in) const {
+  if (!observer_) return 0.0;
+  const double ahead = std::clamp(arrival_in, 0.0, kGustGrows);
+  return LeanUnder(model_.HoverThrust(),
+                   observer_->disturbance().force_W + ahead * observer_->force_rate_W());
 }
 
 // Longer, and the shortest plan would end too early to be decided on.

@@ -106,6 +106,7 @@ class Pilot {
   bool Levelled(double t) const;
   bool Landing() const;
   Eigen::Vector3d WayAt(double t) const;
+  double LeanAtContact(double arrival_in) const;
   double LevelTime(const Eigen::Vector3d& pull_W) const;
   double TouchdownRate(const Eigen::Vector3d& pull_W) const;
   bool to_goal() const;

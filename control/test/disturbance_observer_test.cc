@@ -207,6 +207,23 @@ TEST(DisturbanceObserver, SteadyForceIsTheSlowPart) {
   EXPECT_NEAR(observer.steady_force_W().x(), 2.0, 0.15);
 }
 
+TEST(DisturbanceObserver, KnowsHowAGustGrows) {
+  DisturbanceObserver observer(Vehicle());
+  Body body(Vehicle());
+  constexpr double kGrows = 5.0;  // [N/s]
+  Fly(&observer, &body, 1.0, [](double) { return Steady(); });
+  EXPECT_LT(observer.force_rate_W().norm(), 0.1 * kGrows);
+  const double t0 = body.state.t;
+  Fly(&observer, &body, 0.7, [&](double t) {
+    return Disturbance{{3.0 + kGrows * (t - t0), -2.0, 0.0}, {0, 0, 0}};
+  });
+  EXPECT_NEAR(observer.force_rate_W().x(), kGrows, 0.1 * kGrows);
+  observer.Update(body.state, true);
+  body.state.t += kStep;
+  observer.Update(body.state, true);  // on its feet it learns nothing
+  EXPECT_EQ(observer.force_rate_W().norm(), 0.0);
+}
+
 TEST(DisturbanceObserver, AGustIsRememberedThroughALullAndSteadyWindIsNone) {
   DisturbanceObserver observer(Vehicle());
   Body body(Vehicle());

@@ -26,6 +26,8 @@ constexpr double kLeastGain = 0.5,
                  kGreatestGain = 2.0;  // mass and thrust off by a third, either way
 constexpr double kLeastLift = 0.3;     // of the weight: with less the factor is not seen
 
+constexpr double kRateTime = 0.1;  // the force's rate is smoothed for so long [s]
+
 constexpr double kGustMemory = 30.0;  // [s]
 // What a hover tells of gusts: they are this share of the wind's force, as if seen for so long.
 constexpr double kHoverGusts = 0.3;     // [-]
@@ -110,6 +112,7 @@ const Disturbance& DisturbanceObserver::Update(const estimation::VehicleState& s
   } else {
     v_WB_ = state.v_WB;
     w_WB_B_ = state.w_WB_B;
+    force_rate_W_.setZero();
   }
   last_ = state;
   started_ = true;
@@ -132,6 +135,7 @@ void DisturbanceObserver::Hover(const estimation::VehicleState& state,
   }
   // At a start the actuators are told the model's commands, which say nothing of the moment.
   disturbance_.moment_B.setZero();
+  force_rate_W_.setZero();
   gust_square_ = kHoverGusts * kHoverGusts * steady_force_W_.squaredNorm();
   gust_time_ = kHoverGustTime;
 }
@@ -168,7 +172,9 @@ void DisturbanceObserver::Correct(const estimation::VehicleState& state, double 
   const double z_v = std::exp(-options_.force_bandwidth * dt);
   const Eigen::Vector3d e_v = state.v_WB - v_WB_;
   v_WB_ += (1.0 - z_v * z_v) * e_v;
-  disturbance_.force_W += model_.mass_kg * (1.0 - z_v) * (1.0 - z_v) / dt * e_v;
+  const Eigen::Vector3d change_W = model_.mass_kg * (1.0 - z_v) * (1.0 - z_v) / dt * e_v;
+  disturbance_.force_W += change_W;
+  force_rate_W_ += (1.0 - std::exp(-dt / kRateTime)) * (change_W / dt - force_rate_W_);
   LearnGain(dt);
   Shorten(force_max_, &disturbance_.force_W);
   steady_force_W_ +=

@@ -49,6 +49,8 @@ class DisturbanceObserver {
   void Hover(const estimation::VehicleState& state, const estimation::Commands& thrusts) noexcept;
 
   const Disturbance& disturbance() const { return disturbance_; }
+  /// How the force changes now [N/s].
+  const Eigen::Vector3d& force_rate_W() const { return force_rate_W_; }
   /// The force without its quick changes [N]: what plans can account for.
   const Eigen::Vector3d& steady_force_W() const { return steady_force_W_; }
   /// Root mean square of the quick changes [N], over 30 s: how strong gusts are.
@@ -72,6 +74,7 @@ class DisturbanceObserver {
   Eigen::Vector3d v_WB_ = Eigen::Vector3d::Zero();    ///< as the model has it
   Eigen::Vector3d w_WB_B_ = Eigen::Vector3d::Zero();  ///< the same
   Disturbance disturbance_;
+  Eigen::Vector3d force_rate_W_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d steady_force_W_ = Eigen::Vector3d::Zero();
   double gust_square_ = 0.0;  ///< mean square of the force's quick changes [N^2]
   double gust_time_ = 0.0;    ///< the mean is over this [s]

@@ -393,15 +393,26 @@ TEST(HostileFlightTest, AVehicleThatIsShutInStandsAndSaysWhy) {
 }
 
 // 4 cm above the deck it leant a little too far, gave up, touched in spite of the climb, and bounced off.
-TEST(HostileFlightTest, AClimbThatComesTooLateIsNotBegun) {
+TrialResult Flown(std::uint64_t seed, int number) {
   HostileOptions options;
   options.share_beyond = 0.0;
-  options.seed = 64106;
+  options.seed = seed;
   options.families = {"below",     "clearing", "niche",      "garage",  "limbo",
                       "wide_wall", "far",      "two_floors", "skylight"};
-  const HostileFlight flight = DrawHostileFlight(options, 152, kRegistries);
-  const TrialResult result = RunTrial(flight.trial.scenario, flight.trial.seed, kRegistries);
+  const HostileFlight flight = DrawHostileFlight(options, number, kRegistries);
+  return RunTrial(flight.trial.scenario, flight.trial.seed, kRegistries);
+}
+
+TEST(HostileFlightTest, AClimbThatComesTooLateIsNotBegun) {
+  const TrialResult result = Flown(64106, 152);
   EXPECT_TRUE(result.landed()) << result.detail;
+}
+
+TEST(HostileFlightTest, NobodyTouchesDownInAGustThatGrows) {
+  for (const int number : {1333, 1459}) {
+    const TrialResult result = Flown(64113, number);
+    EXPECT_TRUE(result.landed()) << number << ": " << result.detail;
+  }
 }
 
 class HostileFamilyFlight : public ::testing::TestWithParam<std::string> {};
