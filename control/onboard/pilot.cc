@@ -33,7 +33,7 @@ constexpr double kContactShare = 0.2;     // of the weight, on the feet: enough 
 constexpr double kLeaning = 0.1;          // of steady force over weight: a foot goes ahead
 constexpr double kTurnTime = 2.0;         // ... so long before a planned contact [s]
 constexpr double kMaxHeadingChange =
-    70.0 * estimation::kRadPerDeg;  // of the way: half a foot's sector and more
+    50.0 * estimation::kRadPerDeg;  // of the way: half a foot's sector and a bit
 constexpr double kUpright = 0.07;   // ... until it is less than that
 constexpr double kFlareMargin = 5.0 * estimation::kRadPerDeg;
 constexpr double kBlownOff = 0.15;        // of the reference [m]: far below the 0.5 m that lose it
@@ -496,7 +496,7 @@ double Pilot::Seeing(double heading, const Eigen::Vector3d& p_WB) const {
 
 // The camera should see the path ahead. But over the deck in wind a foot should point to the low
 // side, so that it touches first. The nearest such heading to the present one is taken. If that is
-// far off the path and there is time, it is the nearest to the path.
+// far off the path, it is the nearest to the path.
 double Pilot::DesiredHeading() {
   const Eigen::Vector3d force_W =
       observer_ ? observer_->steady_force_W() : Eigen::Vector3d(Eigen::Vector3d::Zero());
@@ -505,8 +505,7 @@ double Pilot::DesiredHeading() {
   leans_ = lands && share > (leans_ ? kUpright : kLeaning);
   if (!leans_) return heading_ = heading_ahead_;
   heading_ = HeadingIntoWind(model_, force_W, heading_);
-  const bool aside = foot_height_ > parameters_.gate_height &&
-                     std::abs(estimation::WrapAngle(heading_ - heading_ahead_)) > kMaxHeadingChange;
+  const bool aside = std::abs(estimation::WrapAngle(heading_ - heading_ahead_)) > kMaxHeadingChange;
   return heading_ = aside ? HeadingIntoWind(model_, force_W, heading_ahead_) : heading_;
 }
 
