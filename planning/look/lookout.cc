@@ -70,9 +70,9 @@ Lookout::Lookout(const PathCost& cost)
     : cost_(cost), search_({.vertical = cost.vertical}), far_search_({.vertical = cost.vertical}) {
   for (GuidePath* path : {&path_, &back_}) path->reserve(kUsualPath);
   needed_.reserve(kUsualNeeded);
-  places_.reserve(2 * kMostPlaces);
-  candidates_.reserve(2 * kMostPlaces);
-  queue_.reserve(27 * kMostPlaces);
+  places_.reserve(2 * std::size(kApartAt) * kMostPlaces);
+  candidates_.reserve(places_.capacity());
+  queue_.reserve(27 * places_.capacity() / 2);
   sights_.reserve(kUsualCameras);
   look_.cells.reserve(kMostNeeded + 1);
   look_.way_W.reserve(kUsualPath + kMostPlaces);
@@ -250,16 +250,22 @@ bool Lookout::FitsBetween(const HullSpace& hull, const Eigen::Vector3d& a,
 }
 
 /// Adds the places to which cells lead that were seen free, the nearest first: few far apart in the open, more where it
-/// is narrow.
+/// is narrow. From where these end, fewer again: so it comes out of a shaft.
 void Lookout::Flood(const HullSpace& hull, const Place& from) {
-  const double side = hull.space->map->resolution();
   marks_.Begin(*hull.space->map);
   const std::size_t before = places_.size();
+  std::size_t most = before + kMostPlaces;
   Mark reached = kReached;
-  for (const double apart : kApartAt) {
+  const auto* apart = std::begin(kApartAt);
+  for (;; ++apart) {
     places_.resize(before);
-    Flood(hull, from, std::max(1, static_cast<int>(std::lround(apart / side))), reached++);
-    if (places_.size() - before == kMostPlaces) return;
+    places_.push_back(from);
+    Flood(hull, before, most, *apart, reached++);
+    if (places_.size() == most || apart + 1 == std::end(kApartAt)) break;
+  }
+  while (places_.size() == most && apart != std::begin(kApartAt)) {
+    most += kMostPlaces;
+    Flood(hull, before, most, *--apart, reached++);
   }
 }
 
@@ -277,31 +283,37 @@ Lookout::Mark Lookout::MarkAt(const HullSpace& hull, const Eigen::Vector3d& from
   return mark;
 }
 
-void Lookout::Flood(const HullSpace& hull, const Place& from, int stride, Mark reached) {
+/// Adds places, so far apart [m], to those from `first` on, until there are so many.
+void Lookout::Flood(const HullSpace& hull, std::size_t first, std::size_t most, double apart,
+                    Mark reached) {
   const double side = hull.space->map->resolution();
-  const CellIndex origin = hull.space->map->CellOf(from.p_W);
-  const std::size_t most = places_.size() + kMostPlaces;
+  const int stride = std::max(1, static_cast<int>(std::lround(apart / side)));
+  const Eigen::Vector3d from_W = places_[first].p_W;
+  const CellIndex origin = hull.space->map->CellOf(from_W);
   const auto step_of = [&](int i) -> CellIndex {
     return stride * CellIndex(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
   };
   const auto later = [](const Entry& a, const Entry& b) {
     return a.way != b.way ? a.way > b.way : a.number > b.number;
   };
-  const auto add = [&](const CellIndex& node, double way, int before) {
-    marks_.At(origin + node) = reached;
-    const auto place = static_cast<int>(places_.size());
-    places_.push_back({from.p_W + side * node.cast<double>(), way, before});
+  const auto leave = [&](const CellIndex& node, std::size_t place) {
     for (int i = 0; i < 27; ++i) {
       const CellIndex next = node + step_of(i);
-      if (const Mark mark = MarkAt(hull, from.p_W, next); mark == kClosed || mark == reached) {
+      if (const Mark mark = MarkAt(hull, from_W, next); mark == kClosed || mark == reached) {
         continue;
       }
-      queue_.push_back({way + side * step_of(i).cast<double>().norm(), next, 27 * place + i});
+      queue_.push_back({places_[place].way + side * step_of(i).cast<double>().norm(), next,
+                        27 * static_cast<int>(place) + i});
       std::push_heap(queue_.begin(), queue_.end(), later);
     }
   };
   queue_.clear();
-  add(CellIndex::Zero(), from.way, -1);
+  for (std::size_t place = first; place < places_.size(); ++place) {
+    const CellIndex node = ((places_[place].p_W - from_W) / side).array().round().cast<int>();
+    if ((node.array() / stride * stride != node.array()).any()) continue;
+    marks_.At(origin + node) = reached;
+    leave(node, place);
+  }
   while (!queue_.empty() && places_.size() < most) {
     std::pop_heap(queue_.begin(), queue_.end(), later);
     const Entry at = queue_.back();
@@ -312,11 +324,12 @@ void Lookout::Flood(const HullSpace& hull, const Place& from, int stride, Mark r
     const double length = side * step.cast<double>().norm();
     const int tests = static_cast<int>(std::ceil(length / kBetweenTested));
     int passed = 1;
-    const auto fits = [&](const CellIndex& node) {
-      return MarkAt(hull, from.p_W, node) != kClosed;
-    };
+    const auto fits = [&](const CellIndex& node) { return MarkAt(hull, from_W, node) != kClosed; };
     while (passed < tests && fits(at.node - step * passed / tests)) ++passed;
-    if (passed == tests) add(at.node, at.way, at.number / 27);
+    if (passed < tests) continue;
+    marks_.At(origin + at.node) = reached;
+    places_.push_back({from_W + side * at.node.cast<double>(), at.way, at.number / 27});
+    leave(at.node, places_.size() - 1);
   }
 }
 

@@ -137,7 +137,8 @@ class Lookout {
     int number;      ///< as they came: 27 times the place before, and the step from there
   };
   Mark MarkAt(const HullSpace& hull, const Eigen::Vector3d& from, const CellIndex& cells);
-  void Flood(const HullSpace& hull, const Place& from, int stride, Mark reached);
+  void Flood(const HullSpace& hull, std::size_t first, std::size_t most, double apart,
+             Mark reached);
 
   PathCost cost_;
   SpanSearch search_;
