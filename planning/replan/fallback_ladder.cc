@@ -105,14 +105,15 @@ Fallen FallbackLadder::StepDown(const FallbackFacts& facts, ReplanResult* result
   return {.commits = false, .on_plan = turns_away && facts.planned};
 }
 
-Fallen FallbackLadder::Rest(const FallbackFacts& facts, double climb, ReplanResult* result) {
+Fallen FallbackLadder::Rest(const FallbackFacts& facts, double climb,
+                            std::optional<double>* under_way, ReplanResult* result) {
   if (!result->from_odometry && TouchesAnyway(facts)) {
     Fallback::FlyStop(*facts.committed, facts.t0, *facts.hull, result);
     return {.commits = false};
   }
-  const bool under_way = climb_ == climb && !result->from_odometry;
-  if (!under_way) {
-    climb_.reset();
+  const bool goes_on = *under_way == climb && !result->from_odometry;
+  if (!goes_on) {
+    under_way->reset();
     const bool at_rest = facts.committed->proven && !result->from_odometry &&
                          Fallback::AtRest(*facts.committed, facts.t0, false);
     // Below a roof a part of the climb takes the vehicle out of the pad's way, too.
@@ -120,7 +121,7 @@ Fallen FallbackLadder::Rest(const FallbackFacts& facts, double climb, ReplanResu
       if (at_rest && rise == 0.0) break;
       if (!Stops(facts, {0.0, 0.0, rise}, Fallback::Room::kPlanClearance, result)) continue;
       // That none came out is no reason to stop trying.
-      if (rise > 0.0 || climb == 0.0) climb_ = climb;
+      if (rise > 0.0 || climb == 0.0) *under_way = climb;
       if (rise > 0.0) result->status = ReplanStatus::kClimbing;
       return {.commits = true};
     }
@@ -128,7 +129,7 @@ Fallen FallbackLadder::Rest(const FallbackFacts& facts, double climb, ReplanResu
   FallbackFacts resting = facts;
   resting.planned = false;
   const Fallen fallen = StepDown(resting, result);
-  if (under_way && result->status == ReplanStatus::kBraking) result->status = ReplanStatus::kKept;
+  if (goes_on && result->status == ReplanStatus::kBraking) result->status = ReplanStatus::kKept;
   return fallen;
 }
 

@@ -49,7 +49,7 @@ bool LandsWell(const FlightPair& committed, double t0, const HullSpace& hull);
 /// 5. a rest;
 /// 6. after a landing that misses: up, proven or not; else the stored stop.
 ///
-/// It remembers what a rest was for. Does not allocate.
+/// Does not allocate.
 class FallbackLadder {
  public:
   explicit FallbackLadder(const Limits& limits) : fallback_(limits) {}
@@ -62,7 +62,9 @@ class FallbackLadder {
   Fallen StepDown(const FallbackFacts& facts, ReplanResult* result);
 
   /// The caller asked for a rest, `climb` higher [m], or as much of that as a roof leaves.
-  Fallen Rest(const FallbackFacts& facts, double climb, ReplanResult* result);
+  /// @param under_way  the climb that the committed rest was asked for, and then this one
+  Fallen Rest(const FallbackFacts& facts, double climb, std::optional<double>* under_way,
+              ReplanResult* result);
 
   /// The committed curve, with a newer stop.
   bool GoesOn(const FallbackFacts& facts, ReplanResult* result);
@@ -72,17 +74,11 @@ class FallbackLadder {
     return fallback_.NoTimeToBrake(start, space);
   }
 
-  /// The caller asked for the committed rest, so much higher [m].
-  std::optional<double> climb() const { return climb_; }
-  void Restore(std::optional<double> climb) { climb_ = climb; }
-  void Forget() { climb_.reset(); }
-
  private:
   bool Stops(const FallbackFacts& facts, const Eigen::Vector3d& shift, Fallback::Room room,
              ReplanResult* result);
 
   Fallback fallback_;
-  std::optional<double> climb_;
 };
 
 }  // namespace touchdown::planning

@@ -30,7 +30,6 @@ namespace touchdown::planning {
 
 namespace {
 
-constexpr double kNeverTime = -std::numeric_limits<double>::infinity();
 constexpr double kStripMemory = 2.0;  // the strip over a pad that was lost holds this long [s]
 constexpr int kUsualPaths = 32;       // room for those of one step
 constexpr int kUsualPathPoints = 512;
@@ -52,12 +51,13 @@ class Replanner::Impl {
  public:
   Impl(const ReplannerOptions& options, const solvers::BackendRegistry& backends)
       : options_(options), attempt_(options, backends), fallback_(options.limits), end_(options_) {
-    for (UniformBspline* curve : {&current_.curve, &current_.stop, &next_.curve, &next_.stop,
-                                  &result_.curve, &result_.stop}) {
+    for (UniformBspline* curve :
+         {&memory_.current.curve, &memory_.current.stop, &memory_.next.curve, &memory_.next.stop,
+          &result_.curve, &result_.stop}) {
       curve->Reserve(PlanAttempt::kMostControlPoints);
     }
     result_.guide_paths.Reserve(kUsualPaths, kUsualPathPoints);
-    for (BoundParts* parts : {&bound_, &result_.bound}) {
+    for (BoundParts* parts : {&memory_.bound, &result_.bound}) {
       parts->reserve(PlanAttempt::kMostControlPoints);
     }
   }
@@ -66,9 +66,9 @@ class Replanner::Impl {
 
   /// The pair of the result takes over at t0.
   void Commit(double t0) {
-    current_ = next_;
-    next_ = result_.pair();
-    next_.from_unknown = result_.certificate.start_cells.unknown;
+    memory_.current = memory_.next;
+    memory_.next = result_.pair();
+    memory_.next.from_unknown = result_.certificate.start_cells.unknown;
     takes_over_ = t0;
     result_.committed = true;
   }
@@ -77,42 +77,45 @@ class Replanner::Impl {
   void TakeOverAt(double t) {
     if (!result_.committed || t <= takes_over_) return;
     takes_over_ = t;
-    if (t > current_.t_stop) {
-      next_ = current_;
-      result_.committed = planned_before_ = false;
-      fallback_.Forget();
-      Fallback::FlyStop(next_, t, HullSpace{}, &result_);
+    if (t > memory_.current.t_stop) {
+      memory_.next = memory_.current;
+      result_.committed = memory_.planned = false;
+      memory_.climb.reset();
+      Fallback::FlyStop(memory_.next, t, HullSpace{}, &result_);
     }
   }
 
   void CommitStop(const FlatState& from, double t) {
-    MakeRestTrajectory(ToSpline(from), t, Eigen::Vector3d::Zero(), options_.limits, &next_.curve);
-    next_.t_stop = std::numeric_limits<double>::infinity();
-    next_.proven = planned_before_ = false;
-    next_.from_unknown = true;
-    current_ = next_;
+    MakeRestTrajectory(ToSpline(from), t, Eigen::Vector3d::Zero(), options_.limits,
+                       &memory_.next.curve);
+    memory_.next.t_stop = std::numeric_limits<double>::infinity();
+    memory_.next.proven = memory_.planned = false;
+    memory_.next.from_unknown = true;
+    memory_.current = memory_.next;
     takes_over_ = t;
-    asked_t_.reset();
-    unfinished_.reset();
-    fallback_.Forget();
+    memory_.asked_t.reset();
+    memory_.unfinished.reset();
+    memory_.climb.reset();
   }
 
   /// The pair that is flown at time t.
-  const FlightPair& InForce(double t) const { return t < takes_over_ ? current_ : next_; }
+  const FlightPair& InForce(double t) const {
+    return t < takes_over_ ? memory_.current : memory_.next;
+  }
 
   const ReplanResult& Replan(const ReplanInput& input, const OccupancyMap& map);
   const ReplanResult& Rest(const ReplanInput& input, double climb, const OccupancyMap& map);
 
-  ReplannerState State() const;
   void Restore(const ReplannerState& state);
 
   const ReplannerOptions options_;
-  FlightPair current_, next_;
-  double takes_over_ = 0.0;  // next_ does [s]
+  ReplannerState memory_;
+  double takes_over_ = 0.0;  // the memory's `next` does [s]
   ReplanLog* log_ = nullptr;
 
  private:
   FreeSpace Space(const OccupancyMap& map) const;
+  bool RemembersStrip(double t) const;
   FreeSpace SpaceWithoutPad(const ReplanInput& input, const OccupancyMap& map) const;
   double WatchedUntil(const ReplanInput& input) const;
   FreeSpace SpaceOverPad(const ReplanInput& input, const SplineState& start, double t_end,
@@ -140,19 +143,11 @@ class Replanner::Impl {
   Limits limits_;                  // what the pull of this step leaves
   double margin_ = 0.0;            // around the hull in this step [m]
   double reaction_ = 0.0;          // after which a stop of this step begins [s]
-  std::optional<double> asked_t_;  // the last answer took over then [s]
   bool stands_ = false;            // something is committed
   PlanEnd end_;                    // of this step's plans
   ReplanResult result_;
   UnseenZone unseen_;
-  bool planned_before_ = false;  // the committed curve is a plan to the pad: its arrival is kept
-  bool around_unseen_ = false;   // ... and it led around cells that were not seen
-  BoundParts bound_;             // what of it is bound to free space
-  double looked_t_ = 0.0;        // when other ways were last looked for [s]
-  std::optional<Attempt> unfinished_;  // at which this step will have run out of its budget, ...
-  std::optional<Attempt> resumes_;     // ... and the last one did
-  FreeSpace strip_;                    // over the last known pad ...
-  double strip_t_ = kNeverTime;        // ... at this time
+  std::optional<Attempt> resumes_;  // at which the last step ran out of its budget
 };
 
 FreeSpace Replanner::Impl::Space(const OccupancyMap& map) const { return SpaceFor(options_, map); }
@@ -166,60 +161,35 @@ FreeSpace Replanner::Impl::SpaceOverPad(const ReplanInput& input, const SplineSt
   return space;
 }
 
+bool Replanner::Impl::RemembersStrip(double t) const {
+  return memory_.strip_t && t - *memory_.strip_t <= kStripMemory;
+}
+
 /// A vehicle that has just lost its pad is still above it: the strip stays for a while.
 FreeSpace Replanner::Impl::SpaceWithoutPad(const ReplanInput& input,
                                            const OccupancyMap& map) const {
-  FreeSpace space = input.t_start - strip_t_ <= kStripMemory ? strip_ : Space(map);
-  space.map = &map;
+  FreeSpace space = Space(map);
+  if (!RemembersStrip(input.t_start)) return space;
+  space.pad_from = memory_.strip_from;
+  space.pad_to = memory_.strip_to;
+  space.pad_radius = options_.pad_radius;
+  space.pad_floor = memory_.strip_floor;
   return space;
 }
 
 /// The strip over the pad reaches as far as the committed plan does.
 double Replanner::Impl::WatchedUntil(const ReplanInput& input) const {
-  return std::max(input.t_start + options_.min_duration, next_.curve.t_end());
-}
-
-ReplannerState Replanner::Impl::State() const {
-  ReplannerState state;
-  state.current = current_;
-  state.next = next_;
-  state.planned = planned_before_;
-  state.around_unseen = around_unseen_;
-  state.bound = bound_;
-  state.looked_t = looked_t_;
-  state.asked_t = asked_t_;
-  state.unfinished = unfinished_;
-  state.climb = fallback_.climb();
-  if (std::isfinite(strip_t_)) state.strip_t = strip_t_;
-  state.strip_from = strip_.pad_from;
-  state.strip_to = strip_.pad_to;
-  state.strip_floor = strip_.pad_floor;
-  return state;
+  return std::max(input.t_start + options_.min_duration, memory_.next.curve.t_end());
 }
 
 void Replanner::Impl::Restore(const ReplannerState& state) {
   stands_ = true;
-  current_ = state.current;
-  next_ = state.next;
-  takes_over_ = next_.curve.t0();
-  planned_before_ = state.planned;
-  around_unseen_ = state.around_unseen;
-  bound_ = state.bound;
-  looked_t_ = state.looked_t;
-  asked_t_ = state.asked_t;
-  unfinished_ = state.unfinished;
-  fallback_.Restore(state.climb);
-  strip_t_ = state.strip_t.value_or(kNeverTime);
-  strip_.floor = options_.floor_height;
-  strip_.ceiling = options_.ceiling_height;
-  strip_.pad_from = state.strip_from;
-  strip_.pad_to = state.strip_to;
-  strip_.pad_radius = options_.pad_radius;
-  strip_.pad_floor = state.strip_floor;
+  memory_ = state;
+  takes_over_ = memory_.next.curve.t0();
 }
 
 void Replanner::Impl::Begin(const ReplanInput& input) {
-  resumes_ = std::exchange(unfinished_, std::nullopt);
+  resumes_ = std::exchange(memory_.unfinished, std::nullopt);
   margin_ = input.margins.Sum();
   reaction_ = options_.reaction;
   limits_ = LimitsUnder(options_.limits, options_.problem.vehicle, input.pull_W);
@@ -245,8 +215,8 @@ void Replanner::Impl::Begin(const ReplanInput& input) {
 
 /// Without a usable state of the vehicle nothing can be decided: the committed pair goes on, to its stop.
 const ReplanResult& Replanner::Impl::RefuseState(const ReplanInput& input, const char* wrong) {
-  const double t0 = std::isfinite(input.t_start) ? input.t_start : next_.curve.t0();
-  Fallback::FlyStop(next_, t0, HullSpace{}, &result_);
+  const double t0 = std::isfinite(input.t_start) ? input.t_start : memory_.next.curve.t0();
+  Fallback::FlyStop(memory_.next, t0, HullSpace{}, &result_);
   result_.reason = ReplanReason::kInvalidInput;
   result_.detail = wrong;
   return result_;
@@ -255,9 +225,9 @@ const ReplanResult& Replanner::Impl::RefuseState(const ReplanInput& input, const
 /// A caller that asks less often than options_.reaction is assumed to continue like that. Otherwise each plan would
 /// be flown into its stop.
 void Replanner::Impl::NoteAsked(double t_start) {
-  const double since = asked_t_ ? t_start - *asked_t_ : 0.0;
+  const double since = memory_.asked_t ? t_start - *memory_.asked_t : 0.0;
   if (since <= kRestartAfter) reaction_ = std::max(reaction_, since);
-  asked_t_ = t_start;
+  memory_.asked_t = t_start;
 }
 
 /// The committed state when the answer takes over, or the vehicle's own where tracking is lost.
@@ -282,7 +252,7 @@ const char* Replanner::Impl::WrongInState(const ReplanInput& input) const {
 HullSpace Replanner::Impl::HullIn(const FreeSpace& space,
                                   const estimation::PadPrediction* pad) const {
   HullSpace hull = HullFor(options_, space, margin_, pad);
-  hull.start_proven = !result_.from_odometry && next_.proven && !next_.from_unknown;
+  hull.start_proven = !result_.from_odometry && memory_.next.proven && !memory_.next.from_unknown;
   return hull;
 }
 
@@ -292,7 +262,7 @@ const ReplanResult& Replanner::Impl::Replan(const ReplanInput& input, const Occu
   if (const char* wrong = WrongInState(input)) return RefuseState(input, wrong);
   NoteAsked(input.t_start);
   const SplineState start = Start(input);
-  fallback_.Forget();
+  memory_.climb.reset();
   const char* wrong = WrongInTarget(input, options_.max_duration);
   const bool target_valid = wrong == nullptr;
   if (wrong) result_.detail = wrong;
@@ -306,13 +276,15 @@ const ReplanResult& Replanner::Impl::Replan(const ReplanInput& input, const Occu
   const FreeSpace space = target_valid ? SpaceOverPad(input, start, WatchedUntil(input), map)
                                        : SpaceWithoutPad(input, map);
   if (target_valid && DeckOf(input)) {
-    strip_ = space;
-    strip_t_ = input.t_start;
+    memory_.strip_t = input.t_start;
+    memory_.strip_from = space.pad_from;
+    memory_.strip_to = space.pad_to;
+    memory_.strip_floor = space.pad_floor;
   }
   if (result_.reason == ReplanReason::kNone) {
     result_.status = ReplanStatus::kPlanned;
-    planned_before_ = true;
-    bound_ = result_.bound;
+    memory_.planned = true;
+    memory_.bound = result_.bound;
     Commit(input.t_start);
     result_.unseen_W = NeededNext(input, HullIn(space, DeckOf(input)));
     return result_;
@@ -325,7 +297,7 @@ const ReplanResult& Replanner::Impl::Replan(const ReplanInput& input, const Occu
 FallbackFacts Replanner::Impl::FactsFor(const ReplanInput& input, const SplineState& start,
                                         const HullSpace& hull) const {
   FallbackFacts facts;
-  facts.committed = &next_;
+  facts.committed = &memory_.next;
   facts.start = start;
   facts.v_WB = input.vehicle.v_WB;
   facts.t0 = input.t_start;
@@ -333,13 +305,13 @@ FallbackFacts Replanner::Impl::FactsFor(const ReplanInput& input, const SplineSt
   facts.hull = &hull;
   facts.endpoint = end_.is_look() ? end_.target() : input.endpoint;
   if (end_.is_look()) facts.look_from_W = input.look_from_W;
-  facts.planned = planned_before_;
+  facts.planned = memory_.planned;
   return facts;
 }
 
 /// Commits the ladder's result, if it is new.
 const ReplanResult& Replanner::Impl::Finish(const Fallen& fallen, double t0) {
-  planned_before_ = fallen.on_plan;
+  memory_.planned = fallen.on_plan;
   if (fallen.commits) Commit(t0);
   return result_;
 }
@@ -347,7 +319,7 @@ const ReplanResult& Replanner::Impl::Finish(const Fallen& fallen, double t0) {
 /// A cell that a later step's stop needs: the first on the way beyond the pair's first part.
 std::optional<Eigen::Vector3d> Replanner::Impl::NeededNext(const ReplanInput& input,
                                                            const HullSpace& hull) const {
-  const UniformBspline& curve = next_.curve;
+  const UniformBspline& curve = memory_.next.curve;
   const double t_from = input.t_start + reaction_;
   if (curve.t_end() <= t_from) return std::nullopt;
   return SweepHull(curve, t_from, curve.t_end(), {curve.Position(t_from), t_from}, hull, kAnyTime)
@@ -362,20 +334,21 @@ const ReplanResult& Replanner::Impl::Rest(const ReplanInput& input, double climb
   NoteAsked(input.t_start);
   const SplineState start = Start(input);
   const bool remembered =
-      input.t_start - strip_t_ <= kStripMemory || WrongInTarget(input, options_.max_duration);
+      RemembersStrip(input.t_start) || WrongInTarget(input, options_.max_duration);
   const FreeSpace space = remembered ? SpaceWithoutPad(input, map)
                                      : SpaceOverPad(input, start, WatchedUntil(input), map);
   const HullSpace hull =
       HullIn(space, WrongInPad(input, options_.max_duration) ? nullptr : DeckOf(input));
-  return Finish(fallback_.Rest(FactsFor(input, start, hull), climb, &result_), input.t_start);
+  return Finish(fallback_.Rest(FactsFor(input, start, hull), climb, &memory_.climb, &result_),
+                input.t_start);
 }
 
 /// The committed curve ends about where a landing begins to sink, sooner than a plan of the usual length would.
 bool Replanner::Impl::ArrivesSoon(double t_start) const {
-  const double t = next_.curve.t_end();
+  const double t = memory_.next.curve.t_end();
   if (!end_.target().touches() || t - t_start >= options_.min_duration) return false;
   const Eigen::Vector3d end_W = EndStateAt(end_.pad(), end_.target(), t).state.p;
-  return (end_W - next_.curve.Position(t)).norm() < kNearEnd;
+  return (end_W - memory_.next.curve.Position(t)).norm() < kNearEnd;
 }
 
 /// The first attempt, and the facts that the ladder of attempts depends on. Out of reach: the fresh guess is longer
@@ -387,20 +360,21 @@ Attempt Replanner::Impl::FirstAttempt(const ReplanInput& input, const SplineStat
     return GuessDuration(start, input.t_start, end_.pad(), end_.target(), limits_, detour);
   };
   facts->fresh = guess(1.0);
-  facts->lands_soon = !result_.from_odometry &&
-                      LandsSoon(next_, input.t_start, end_.target(), HullIn(plain, DeckOf(input)));
+  facts->lands_soon =
+      !result_.from_odometry &&
+      LandsSoon(memory_.next, input.t_start, end_.target(), HullIn(plain, DeckOf(input)));
   facts->at_rest =
-      !result_.from_odometry && Fallback::AtRest(next_, input.t_start, planned_before_);
+      !result_.from_odometry && Fallback::AtRest(memory_.next, input.t_start, memory_.planned);
   facts->arrival = options_.arrival;
   facts->min_duration = options_.min_duration;
   facts->max_duration = options_.max_duration;
   // An arrival once promised is kept: a new guess at every step would postpone it for ever. An arrival that is soon
   // on the straight way need not be on a long way around. An end on the way goes on ahead.
-  const double left = next_.curve.t_end() - input.t_start;
-  const bool on_plan = planned_before_ && !result_.from_odometry;
+  const double left = memory_.next.curve.t_end() - input.t_start;
+  const bool on_plan = memory_.planned && !result_.from_odometry;
   const bool promised =
       on_plan && !end_.is_on_the_way() &&
-      guess(DetourOf(next_.curve, input.t_start)) > options_.constants.retime_below * left;
+      guess(DetourOf(memory_.next.curve, input.t_start)) > options_.constants.retime_below * left;
   // A vehicle that follows a pad needs no shorter plans than usual. Only the last ones before a
   // contact are shorter.
   const double shortest =
@@ -411,7 +385,7 @@ Attempt Replanner::Impl::FirstAttempt(const ReplanInput& input, const SplineStat
   const bool fixed = attempt.duration < options_.min_duration || facts->lands_soon;
   attempt.arrival = fixed ? ArrivalMode::kFixed : options_.arrival;
   // A plan that led around unseen cells is followed by others that do: they must not alternate.
-  const bool closes = around_unseen_ && on_plan && !facts->lands_soon;
+  const bool closes = memory_.around_unseen && on_plan && !facts->lands_soon;
   attempt.unseen_reach = closes ? options_.constants.unseen_reach : 0.0;
   return attempt;
 }
@@ -422,7 +396,7 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
   AttemptFacts facts;
   Attempt attempt = FirstAttempt(input, start, Space(map), &facts);
   if (!(facts.fresh <= options_.max_duration)) return ReplanReason::kPadUnreachable;
-  const bool on_plan = planned_before_ && !result_.from_odometry;
+  const bool on_plan = memory_.planned && !result_.from_odometry;
   const double first = std::max(attempt.duration, facts.fresh);
   // On a plan, the next step first checks whether it holds.
   if (resumes_ && !on_plan && !facts.lands_soon && !result_.from_odometry) attempt = *resumes_;
@@ -439,7 +413,7 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
         attempt_.Run(RequestFor(input, start, attempt, facts, first, hull), &result_);
     result_.work = attempt_.work();
     if (reason == ReplanReason::kNone) {
-      around_unseen_ = attempt.unseen_reach > 0.0 && result_.rebinds > 0;
+      memory_.around_unseen = attempt.unseen_reach > 0.0 && result_.rebinds > 0;
       return reason;
     }
     if (reason == ReplanReason::kCollisionRemains && fallback_.NoTimeToBrake(start, space))
@@ -451,12 +425,12 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
         fallback_.GoesOn(FactsFor(input, start, hull), &result_)) {
       return reason;
     }
-    facts.lands_well = facts.lands_soon && LandsWell(next_, input.t_start, hull);
+    facts.lands_well = facts.lands_soon && LandsWell(memory_.next, input.t_start, hull);
     const AttemptDecision decision =
         NextAttempt(attempt, {reason, attempt_.duration()}, facts, options_.constants);
     if (attempt_.spent()) {
       // A later attempt gets a whole budget in the next step. A first one had it, and is given up.
-      unfinished_ = tried > 1 ? attempt : decision.next;
+      memory_.unfinished = tried > 1 ? attempt : decision.next;
       return reason;
     }
     if (!decision.next) return decision.reason;
@@ -492,15 +466,15 @@ AttemptRequest Replanner::Impl::RequestFor(const ReplanInput& input, const Splin
                      : result_.ends_in_contact ? PairEnd::kRestOrContact
                                                : PairEnd::kRest;
   // The committed side of an obstacle is tried once; if it fails, the map decides anew.
-  request.previous = is_first && planned_before_ ? &next_.curve : nullptr;
+  request.previous = is_first && memory_.planned ? &memory_.next.curve : nullptr;
   request.starts_on_previous = request.previous != nullptr && !result_.from_odometry;
-  request.bound = &bound_;
+  request.bound = &memory_.bound;
   // Shortly before contact nothing is kept: earlier pairs would push the vehicle there.
-  const double left = next_.curve.t_end() - input.t_start;
+  const double left = memory_.next.curve.t_end() - input.t_start;
   request.keeps = request.starts_on_previous &&
                   !(end_.target().leads_to_contact() && left < constants.near_contact);
-  request.looks = !request.keeps || input.t_start - looked_t_ >= constants.look_every;
-  if (request.looks) looked_t_ = input.t_start;
+  request.looks = !request.keeps || input.t_start - memory_.looked_t >= constants.look_every;
+  if (request.looks) memory_.looked_t = input.t_start;
   request.log = log_ ? &log_->attempts.emplace_back() : nullptr;
   return request;
 }
@@ -541,7 +515,7 @@ FlatState Replanner::Reference(double t) const { return impl_->InForce(t).At(t);
 
 const ReplannerOptions& Replanner::options() const { return impl_->options_; }
 
-ReplannerState Replanner::state() const { return impl_->State(); }
+const ReplannerState& Replanner::state() const { return impl_->memory_; }
 
 void Replanner::Restore(const ReplannerState& state) { impl_->Restore(state); }
 

@@ -73,8 +73,8 @@ class Replanner : public Planner {
 
   const ReplannerOptions& options() const;
 
-  /// What the next step depends on, besides its arguments, and the way back to it. Allocate.
-  ReplannerState state() const;
+  /// What the next step depends on, besides its arguments, and the way back to it, which allocates.
+  const ReplannerState& state() const;
   void Restore(const ReplannerState& state);
 
   /// The following steps are logged in `log` (cleared at each); nullptr ends it. It must outlive
