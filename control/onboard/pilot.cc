@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <stdexcept>
 #include <utility>
 
@@ -32,8 +33,7 @@ constexpr double kAlignTolerance = 0.35;  // heading counts as aligned within th
 constexpr double kContactShare = 0.2;     // of the weight, on the feet: enough to be a contact
 constexpr double kLeaning = 0.1;          // of steady force over weight: a foot goes ahead
 constexpr double kTurnTime = 2.0;         // ... so long before a planned contact [s]
-constexpr double kMaxHeadingChange =
-    50.0 * estimation::kRadPerDeg;  // of the way: half a foot's sector and a bit
+constexpr double kHeadingSlack = 5.0 * estimation::kRadPerDeg;  // beside half a foot's sector
 constexpr double kUpright = 0.07;   // ... until it is less than that
 constexpr double kFlareMargin = 5.0 * estimation::kRadPerDeg;
 constexpr double kBlownOff = 0.15;        // of the reference [m]: far below the 0.5 m that lose it
@@ -42,7 +42,7 @@ constexpr double kFlareSoftness = 0.8;    // ... to so many times its frequency 
 constexpr double kTouchForce = 0.2;       // on the feet: something holds them [N]
 constexpr double kLevelTimeInPull = 0.2;  // more level time in wind [s per m/s^2 of its force]
 constexpr double kSofterInPull = 0.05;    // contact in wind: 0.2 m/s from 7 m/s on [m/s per m/s^2]
-constexpr double kGustGrows = 0.5;        // for at most so long [s]
+constexpr double kGustHorizon = 0.5;      // the force's change is extrapolated so far [s]
 constexpr double kMeasuredMargin = 1.2;   // a measured latency is flown with this factor
 constexpr double kAttitudeLag = 0.1;      // of the vehicle behind its plans [s]
 constexpr double kTurning = 0.8;  // and then it takes so long to turn away from the deck [s]
@@ -265,11 +265,11 @@ double Pilot::TouchdownRate(const Eigen::Vector3d& pull_W) const {
   return std::max(least, parameters_.touchdown_rate - gusts);
 }
 
-// What holding still there will take, if the wind goes on to change as it does now. A gust that grows in the last
-// half second leaves no time to climb.
+// What holding still there will take, if the wind goes on to change as it does now, but no farther ahead than
+// kGustHorizon. In a gust that is felt later there is no height left to climb.
 double Pilot::LeanAtContact(double arrival_in) const {
   if (!observer_) return 0.0;
-  const double ahead = std::clamp(arrival_in, 0.0, kGustGrows);
+  const double ahead = std::clamp(arrival_in, 0.0, kGustHorizon);
   return LeanUnder(model_.HoverThrust(),
                    observer_->disturbance().force_W + ahead * observer_->force_rate_W());
 }
@@ -505,7 +505,9 @@ double Pilot::DesiredHeading() {
   leans_ = lands && share > (leans_ ? kUpright : kLeaning);
   if (!leans_) return heading_ = heading_ahead_;
   heading_ = HeadingIntoWind(model_, force_W, heading_);
-  const bool aside = std::abs(estimation::WrapAngle(heading_ - heading_ahead_)) > kMaxHeadingChange;
+  const double feet = std::max(1.0, static_cast<double>(model_.foot_azimuths.size()));
+  const double off = std::abs(estimation::WrapAngle(heading_ - heading_ahead_));
+  const bool aside = off > std::numbers::pi / feet + kHeadingSlack;
   return heading_ = aside ? HeadingIntoWind(model_, force_W, heading_ahead_) : heading_;
 }
 

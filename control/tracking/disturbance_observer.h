@@ -49,7 +49,7 @@ class DisturbanceObserver {
   void Hover(const estimation::VehicleState& state, const estimation::Commands& thrusts) noexcept;
 
   const Disturbance& disturbance() const { return disturbance_; }
-  /// How the force changes now [N/s].
+  /// How the force changes now [N/s], before its limit, and with what goes into the thrust factor.
   const Eigen::Vector3d& force_rate_W() const { return force_rate_W_; }
   /// The force without its quick changes [N]: what plans can account for.
   const Eigen::Vector3d& steady_force_W() const { return steady_force_W_; }

@@ -393,7 +393,6 @@ TEST(HostileFlightTest, AVehicleThatIsShutInStandsAndSaysWhy) {
   EXPECT_NEAR(waited.simulated_s, 10.0, 0.01);
 }
 
-// 4 cm above the deck it leant a little too far, gave up, touched in spite of the climb, and bounced off.
 const std::vector<std::string> kOldFamilies = {"dead_end",     "door",       "zigzag",     "walls",
                                                "blind_corner", "overhang",   "low_wall",   "poles",
                                                "facing_wall",  "near_start", "wide_field", "roof"};
@@ -409,6 +408,7 @@ TrialResult Flown(const std::vector<std::string>& families, std::uint64_t seed, 
   return RunTrial(flight.trial.scenario, flight.trial.seed, kRegistries);
 }
 
+// 4 cm above the deck it leant a little too far, gave up, touched in spite of the climb, and bounced off.
 TEST(HostileFlightTest, AClimbThatComesTooLateIsNotBegun) {
   const TrialResult result = Flown(kNewFamilies, 64106, 152);
   EXPECT_TRUE(result.landed()) << result.detail;

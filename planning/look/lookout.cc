@@ -75,7 +75,7 @@ Lookout::Lookout(const PathCost& cost)
   queue_.reserve(27 * places_.capacity() / 2);
   sights_.reserve(kUsualCameras);
   look_.cells.reserve(kMostNeeded + 1);
-  look_.way_W.reserve(kUsualPath + kMostPlaces);
+  look_.way_W.reserve(kUsualPath + places_.capacity());
   seen_.reserve(kMostNeeded + 1);
 }
 
@@ -250,7 +250,7 @@ bool Lookout::FitsBetween(const HullSpace& hull, const Eigen::Vector3d& a,
 }
 
 /// Adds the places to which cells lead that were seen free, the nearest first: few far apart in the open, more where it
-/// is narrow. From where these end, fewer again: so it comes out of a shaft.
+/// is narrow. In such a place as many again in each longer step: so it comes out of a shaft.
 void Lookout::Flood(const HullSpace& hull, const Place& from) {
   marks_.Begin(*hull.space->map);
   const std::size_t before = places_.size();
@@ -260,12 +260,12 @@ void Lookout::Flood(const HullSpace& hull, const Place& from) {
   for (;; ++apart) {
     places_.resize(before);
     places_.push_back(from);
-    Flood(hull, before, most, *apart, reached++);
+    Spread(hull, before, most, *apart, reached++);
     if (places_.size() == most || apart + 1 == std::end(kApartAt)) break;
   }
   while (places_.size() == most && apart != std::begin(kApartAt)) {
     most += kMostPlaces;
-    Flood(hull, before, most, *--apart, reached++);
+    Spread(hull, before, most, *--apart, reached++);
   }
 }
 
@@ -284,8 +284,8 @@ Lookout::Mark Lookout::MarkAt(const HullSpace& hull, const Eigen::Vector3d& from
 }
 
 /// Adds places, so far apart [m], to those from `first` on, until there are so many.
-void Lookout::Flood(const HullSpace& hull, std::size_t first, std::size_t most, double apart,
-                    Mark reached) {
+void Lookout::Spread(const HullSpace& hull, std::size_t first, std::size_t most, double apart,
+                     Mark reached) {
   const double side = hull.space->map->resolution();
   const int stride = std::max(1, static_cast<int>(std::lround(apart / side)));
   const Eigen::Vector3d from_W = places_[first].p_W;
@@ -361,7 +361,7 @@ const Look* Lookout::Onwards(double yaw, const std::vector<Viewpoint>& struck) {
 
 const Look* Lookout::Around(const Eigen::Vector3d& from, double yaw) {
   BeginAt(from);
-  return LookFrom({from, yaw + 0.5 * std::numbers::pi}, -1);
+  return LookFrom({from, estimation::WrapAngle(yaw + 0.5 * std::numbers::pi)}, -1);
 }
 
 const Look* Lookout::Highest(const HullSpace& hull, const Eigen::Vector3d& from,
@@ -369,7 +369,6 @@ const Look* Lookout::Highest(const HullSpace& hull, const Eigen::Vector3d& from,
   BeginAt(from);
   places_.clear();
   Flood(hull, begin_);
-  if (places_.empty()) return nullptr;
   const auto lower = [](const Place& a, const Place& b) { return a.p_W.z() < b.p_W.z(); };
   const auto highest = std::max_element(places_.begin(), places_.end(), lower);
   const Eigen::Vector3d to = goal - highest->p_W;

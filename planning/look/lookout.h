@@ -119,7 +119,7 @@ class Lookout {
 
   using Mark = std::uint8_t;
   static constexpr Mark kNone = 0, kFits = 1, kClosed = 2,
-                        kReached = 3;  ///< or more: in a later stride
+                        kReached = 3;  ///< or more: in a later flood
   /// A mark for each cell of the window, of which few are set.
   class CellMarks {
    public:
@@ -137,8 +137,8 @@ class Lookout {
     int number;      ///< as they came: 27 times the place before, and the step from there
   };
   Mark MarkAt(const HullSpace& hull, const Eigen::Vector3d& from, const CellIndex& cells);
-  void Flood(const HullSpace& hull, std::size_t first, std::size_t most, double apart,
-             Mark reached);
+  void Spread(const HullSpace& hull, std::size_t first, std::size_t most, double apart,
+              Mark reached);
 
   PathCost cost_;
   SpanSearch search_;

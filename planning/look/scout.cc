@@ -264,10 +264,12 @@ class Scout::Impl {
     LookAround(yaw, "begins: around, since no place to look from is reached");
   }
 
-  /// On from where that ended last: in between it may have turned back to its goal.
+  /// On from the last such look, if that was here: in between it may have turned back to its goal.
   void LookAround(double yaw, std::string_view reason) {
-    look_ = lookout_.Around(was_.back().p_WB, around_yaw_.value_or(yaw));
-    around_yaw_ = look_->from.yaw;
+    const Eigen::Vector3d& here = was_.back().p_WB;
+    const bool goes_on = around_ && (around_->p_WB - here).norm() < kNearer;
+    look_ = lookout_.Around(here, goes_on ? around_->yaw : yaw);
+    around_ = look_->from;
     reason_ = reason;
   }
 
@@ -425,7 +427,7 @@ class Scout::Impl {
   double most_detour_ = kDetour;
   Way way_ = Way::kPlanned;
   int turns_ = 0;                    // on the spot, since there is no way
-  std::optional<double> around_yaw_;  // to where it turned last on the spot
+  std::optional<Viewpoint> around_;  // of the last look on the spot
   bool doubts_ = false;              // of cells that are known to block
   bool prefers_wide_ = false;        // ways: it stood where the hull just fits
   bool up_ = false;                  // as high as it could climb, for that best

@@ -62,7 +62,7 @@ class FallbackLadder {
   Fallen StepDown(const FallbackFacts& facts, ReplanResult* result);
 
   /// The caller asked for a rest, `climb` higher [m], or as much of that as a roof leaves.
-  /// @param under_way  the climb that the committed rest was asked for, and then this one
+  /// @param under_way  the climb for which the committed rest was asked, and on return the answer
   Fallen Rest(const FallbackFacts& facts, double climb, std::optional<double>* under_way,
               ReplanResult* result);
 

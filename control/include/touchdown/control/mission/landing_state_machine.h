@@ -174,7 +174,7 @@ struct MissionInputs {
   /// Until the committed plan touches the deck [s], negative when that is overdue; infinite where it
   /// does not lead there.
   double arrival_in = std::numeric_limits<double>::infinity();
-  double lean = 0.0;        ///< that holding still takes in the wind felt now [rad]
+  double lean = 0.0;        ///< that holding still takes in the wind at contact [rad]
   bool yaw_aligned = true;  ///< body heading along the direction of travel
   bool emergency = false;   ///< obstacle too close, operator's stop, …
   DescentStyle descent = DescentStyle::kVertical;

@@ -73,7 +73,8 @@ class Replanner : public Planner {
 
   const ReplannerOptions& options() const;
 
-  /// What the next step depends on, besides its arguments, and the way back to it, which allocates.
+  /// What the next step depends on, besides its arguments: it changes with the step. And the way back to it, which
+  /// allocates.
   const ReplannerState& state() const;
   void Restore(const ReplannerState& state);
 
